@@ -101,7 +101,8 @@ bool same_actuation(const Model& here, const Model& other) {
   return std::equal(here.rods.begin(), here.rods.end(), other.rods.begin(),
                     [](const RodMesh& a, const RodMesh& b) {
                       return a.natural_strain_entries.edges == b.natural_strain_entries.edges &&
-                             a.natural_strain_entries.cells == b.natural_strain_entries.cells;
+                             a.natural_strain_entries.cells == b.natural_strain_entries.cells &&
+                             a.natural_strain_entries.legs == b.natural_strain_entries.legs;
                     });
 }
 

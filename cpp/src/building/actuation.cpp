@@ -1,5 +1,6 @@
 #include "building/actuation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -30,6 +31,11 @@ Changes changes_of(const scenario::Rod& rod, const scenario::Scene& scene) {
     (actuation.what == Actuated::Length ? changes.lengths : changes.cells) = true;
   }
   return changes;
+}
+
+/// At least those of the end cells of a rod's legs.
+Index entries_of_legs(const scenario::Rod& rod) {
+  return 2 * NaturalStrainEntries::kMostAngles * static_cast<Index>(rod.num_edges());
 }
 
 Index strains_of_cell(int dimension) { return dimension == 2 ? 1 : 3; }
@@ -80,7 +86,8 @@ class Weights {
 
   /// Towards director `strain`, or in the plane, by table number `strain`.
   void add_curvature(std::size_t strain) {
-    for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
+    for (const Leg& leg : rod_.legs) add_curvature(leg);
+    for (Index edge = 0; edge < (rod_.legs.empty() ? rod_.num_edges() : 0); ++edge) {
       const auto [at_start, at_end] = edge_turns(stretch_, rod_, edge);
       add_at_start(static_cast<Index>(strain), edge, at_start, strain);
       add_at_end(static_cast<Index>(strain), edge, at_end, strain);
@@ -88,6 +95,36 @@ class Weights {
   }
 
  private:
+  /// The turning angles of a leg without stress, whose curvature is linear between its nodes.
+  void add_curvature(const Leg& leg) {
+    const auto at = [&](Index place) {
+      return stretch_.profile_at(rod_.arc_length_at(place), place == leg.last);
+    };
+    const auto number = static_cast<std::size_t>(&leg - rod_.legs.data());
+    for (const bool from_start : {true, false}) {
+      const Index joint = from_start ? leg.first : leg.last;
+      const Index step = from_start ? 1 : -1;
+      const Mat3 C = end_compliance(leg, from_start, rod_.edge_length);
+      const bool has_cell = (from_start ? leg.start_cell : leg.end_cell) >= 0;
+      for (Index i = 0; i < NaturalStrainEntries::kMostAngles && has_cell; ++i) {
+        double turn = 0.0;
+        for (Index k = 0; k <= std::min<Index>(leg.num_cells(), 2); ++k) {
+          turn += static_cast<double>(step) * C(i, k) * at(joint + step * k);
+        }
+        const Index entry = rod_.natural_strain_entries.end_cell(number, from_start).entry + i;
+        add({entry}, turn, stretch_.controls[0]);
+      }
+    }
+    for (Index place = leg.first + 1; place < leg.last; ++place) {
+      if (leg.in_end_cell(place)) continue;
+      double turn = rod_.voronoi_length(place) * at(place);
+      // A free end is on the curve, the node next to it beside it.
+      if (place == leg.first + 1) turn += rod_.edge_length[to_size(leg.first)] / 12.0 * at(leg.first);
+      if (place == leg.last - 1) turn += rod_.edge_length[to_size(place)] / 12.0 * at(leg.last);
+      add(rod_.natural_strain_entries.cell(place, false), turn, stretch_.controls[0]);
+    }
+  }
+
   [[nodiscard]] double start(Index edge) const { return rod_.arc_length_at(edge); }
   [[nodiscard]] double end(Index edge) const { return rod_.arc_length_at(edge + 1); }
 
@@ -148,6 +185,7 @@ Index num_rest_entries(const scenario::Scene& scene, int dimension) {
       const Index places =
           2 * static_cast<Index>(rod.points.size()) + num_spring_places(rod, scene);
       count += strains_of_cell(dimension) * places;
+      if (!scene.joints.empty()) count += entries_of_legs(rod);
     }
   }
   return count;
@@ -165,6 +203,10 @@ void set_rest_entries(const scenario::Scene& scene, Model& model) {
       const Index size =
           2 * rod.natural_strain_entries.strains * static_cast<Index>(rod.nodes.size());
       rod.natural_strain_entries.cells = std::exchange(next, next + size);
+      if (!scene.joints.empty()) {
+        rod.natural_strain_entries.legs =
+            std::exchange(next, next + entries_of_legs(scene.rods[i]));
+      }
       const Index places = num_spring_places(scene.rods[i], scene);
       if (places > 0) {
         rod.natural_strain_entries.springs =

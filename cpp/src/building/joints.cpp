@@ -49,6 +49,15 @@ RodPoints points_of(const scenario::Scene& scene, const RodMesh& rod, const Mode
       enter(moment->rod, moment->at, true);
     }
   }
+  for (const auto& actuation : scene.actuations) {
+    if (actuation.rod != rod.name || actuation.what == scenario::Actuated::Length) continue;
+    for (const double s : {actuation.from, actuation.to}) {
+      scenario::Location at;
+      at.kind = scenario::Location::Kind::ArcLength;
+      at.arc_length = s;
+      enter(rod.name, at, false);
+    }
+  }
   for (const Index place : corners_of(rod, model)) points.ends_leg[to_size(place)] = true;
   for (std::size_t i = 0; i < count; ++i) {
     if (rod.sphere_radius[i] > 0.0) points.ends_leg[i] = true;

@@ -32,9 +32,7 @@ class LegBuilder {
     if (at_start) cells == 1 ? add_end_cell<1, 1>(true) : add_end_cell<2, 1>(true);
     if (at_end) cells == 1 ? add_end_cell<1, 1>(false) : add_end_cell<2, 1>(false);
     for (Index place = leg_.first + 1; place < leg_.last; ++place) {
-      const bool in_end_cell = (at_start && place == leg_.first + 1) ||
-                               (at_end && place == leg_.last - 1);
-      if (!in_end_cell) add_bend(place);
+      if (!leg_.in_end_cell(place)) add_bend(place);
     }
   }
 
@@ -60,7 +58,8 @@ class LegBuilder {
     auto& list = elements_of<PlanarBend<Curvature>>(*model_.elements);
     if (leg_.first_bend < 0) leg_.first_bend = static_cast<Index>(list.size());
     list.add({before[0], before[1], after[0], after[1], after[2], after[3]},
-             {rod_.EI / rod_.voronoi_length(place), Curvature::of(rest).kappa, {}});
+             {rod_.EI / rod_.voronoi_length(place), Curvature::of(rest).kappa,
+              rod_.natural_strain_entries.cell(place, false)});
   }
 
   /// From the joint at the start of the leg, or from that at its end.
@@ -100,6 +99,8 @@ class LegBuilder {
       }
       c.rest[i] = Curvature::of(rest).kappa;
     }
+    c.actuated = rod_.natural_strain_entries.end_cell(
+        static_cast<std::size_t>(&leg_ - rod_.legs.data()), from_start);
     auto& list = elements_of<Kernel>(*model_.elements);
     (from_start ? leg_.start_cell : leg_.end_cell) = static_cast<Index>(list.size());
     list.add(dofs, c);
@@ -116,7 +117,7 @@ void add_leg_elements(RodMesh& rod, Model& model) {
   rod.rest_turning_angle.assign(rod.nodes.size(), 0.0);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     elements_of<Stretch<2>>(*model.elements)
-        .add(rod.edge_dofs(edge, model), {rod.EA, rod.edge_length[to_size(edge)], {}});
+        .add(rod.edge_dofs(edge, model), {rod.EA, rod.edge_length[to_size(edge)], rod.natural_strain_entries.edge(edge)});
   }
   for (Index place = 1; place < rod.num_edges(); ++place) {
     rod.rest_turning_angle[to_size(place)] =

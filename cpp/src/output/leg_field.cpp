@@ -13,18 +13,21 @@
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "model/reference_edge.hpp"
+#include "output/actuated_shape.hpp"
 
 namespace der {
 namespace {
 
-/// Reads a moment [N m] off the coordinates.
-using MomentReader = std::function<double(const Vector& coordinates)>;
+/// Reads a moment [N m].
+using MomentReader = std::function<double(const Model& model, const State& state)>;
 
 /// What the nodes and edges of one leg tell.
 class LegReader {
  public:
-  LegReader(const Leg& leg, const RodMesh& rod, const Model& model) : leg_(leg), rod_(rod) {
-    moments_.assign(to_size(leg.num_cells()) + 1, [](const Vector& /*coordinates*/) { return 0.0; });
+  LegReader(const Leg& leg, const RodMesh& rod, const Model& model)
+      : leg_(leg), rod_(rod), actuated_(rod) {
+    moments_.assign(to_size(leg.num_cells()) + 1,
+                    [](const Model& /*model*/, const State& /*state*/) { return 0.0; });
     if (rod.EI > 0.0) {
       if (rod.curvature == scenario::CurvatureMeasure::Angle) {
         find_moments<AngleCurvature>(model);
@@ -33,10 +36,14 @@ class LegReader {
       }
     }
     find_natural(model);
+    for (Index edge = leg.first; edge < leg.last; ++edge) {
+      elongations_.emplace_back(rod.natural_strain_entries.edge(edge), 1, model);
+    }
     for (const bool from_start : {true, false}) {
       const Mat3 C = end_compliance(leg, from_start, rod.edge_length);
       End& end = from_start ? start_ : end_;
       end.per_moment = rod.EI > 0.0 ? C(0, 1) / rod.EI : 0.0;
+      end.lengths = C.row(0);
       const double direction = (from_start ? leg.start : leg.end).direction;
       const Vec2 edge = reference_edge(rod, from_start ? leg.first : leg.last - 1, model);
       end.natural = angle_between({std::cos(direction), std::sin(direction)}, edge);
@@ -51,41 +58,44 @@ class LegReader {
   }
 
   /// Moment [N m] at a node of the leg, counted from its start.
-  [[nodiscard]] double moment(Index node, const Vector& x) const {
-    return moments_[to_size(node)](x);
+  [[nodiscard]] double moment(Index node, const Model& model, const State& state) const {
+    return moments_[to_size(node)](model, state);
   }
-  /// [1/m]
-  [[nodiscard]] double natural_curvature(Index node) const { return natural_[to_size(node)]; }
-  [[nodiscard]] double curvature(Index node, const Vector& x) const {
-    const double elastic = rod_.EI > 0.0 ? moment(node, x) / rod_.EI : 0.0;
-    return elastic + natural_curvature(node);
+  /// [1/m] With what actuations add.
+  [[nodiscard]] double natural_curvature(Index node, const Model& model,
+                                         const State& state) const {
+    return natural_[to_size(node)] + actuated(node, model, state);
+  }
+  [[nodiscard]] double curvature(Index node, const Model& model, const State& state) const {
+    const double elastic = rod_.EI > 0.0 ? moment(node, model, state) / rod_.EI : 0.0;
+    return elastic + natural_curvature(node, model, state);
   }
 
   /// The angle of the tangent from the x axis [rad].
-  [[nodiscard]] double slope(Index node, const Model& model, const Vector& x) const {
+  [[nodiscard]] double slope(Index node, const Model& model, const State& state) const {
     const Index last = leg_.num_cells();
-    if (node == 0 && leg_.start.rotation >= 0) return slope_of(leg_.start, model, x);
-    if (node == last && leg_.end.rotation >= 0) return slope_of(leg_.end, model, x);
+    if (node == 0 && leg_.start.rotation >= 0) return slope_of(leg_.start, model, state);
+    if (node == last && leg_.end.rotation >= 0) return slope_of(leg_.end, model, state);
     if (leg_.start.rotation < 0 && leg_.end.rotation >= 0) {
       // From the joint at the end back.
-      double edge = edge_beside(slope_of(leg_.end, model, x), last - 1, model, x);
-      for (Index k = last - 1; k > node; --k) edge -= turn(k, model, x);
-      return node == 0 ? edge - lean(start_, 1, x) : edge - share_before(node) * turn(node, model, x);
+      double edge = edge_beside(slope_of(leg_.end, model, state), last - 1, model, state);
+      for (Index k = last - 1; k > node; --k) edge -= turn(k, model, state);
+      return node == 0 ? edge - lean(start_, 1, model, state) : edge - share_before(node) * turn(node, model, state);
     }
-    double edge = edge_beside(leg_.start.rotation >= 0 ? slope_of(leg_.start, model, x)
+    double edge = edge_beside(leg_.start.rotation >= 0 ? slope_of(leg_.start, model, state)
                                                        : leg_.start.direction,
-                              0, model, x);
-    if (node == 0) return edge - lean(start_, 1, x);
-    for (Index k = 1; k < node; ++k) edge += turn(k, model, x);
-    if (node == last) return edge - lean(end_, last - 1, x);
-    return edge + (1.0 - share_before(node)) * turn(node, model, x);
+                              0, model, state);
+    if (node == 0) return edge - lean(start_, 1, model, state);
+    for (Index k = 1; k < node; ++k) edge += turn(k, model, state);
+    if (node == last) return edge - lean(end_, last - 1, model, state);
+    return edge + (1.0 - share_before(node)) * turn(node, model, state);
   }
 
   /// The force [N] that the rod behind a node exerts on the rod before it: linear through the
   /// middles of the two nearest edges.
-  [[nodiscard]] Vec2 force(Index node, const Model& model, const Vector& x) const {
+  [[nodiscard]] Vec2 force(Index node, const Model& model, const State& state) const {
     const Index last = leg_.num_cells();
-    if (last == 1) return edge_force(0, model, x);
+    if (last == 1) return edge_force(0, model, state);
     const Index before = std::min(std::max<Index>(node - 1, 0), last - 2);
     const double a = length(before);
     const double b = length(before + 1);
@@ -93,12 +103,12 @@ class LegReader {
                                : node == before + 1 ? 0.5 * a
                                                     : 0.5 * a + b;
     const double share = from_middle / (0.5 * (a + b));
-    return (1.0 - share) * edge_force(before, model, x) + share * edge_force(before + 1, model, x);
+    return (1.0 - share) * edge_force(before, model, state) + share * edge_force(before + 1, model, state);
   }
   /// Its component along the tangent [N].
-  [[nodiscard]] double tension(Index node, const Model& model, const Vector& x) const {
-    const double angle = slope(node, model, x);
-    return force(node, model, x).dot(Vec2{std::cos(angle), std::sin(angle)});
+  [[nodiscard]] double tension(Index node, const Model& model, const State& state) const {
+    const double angle = slope(node, model, state);
+    return force(node, model, state).dot(Vec2{std::cos(angle), std::sin(angle)});
   }
 
  private:
@@ -106,6 +116,7 @@ class LegReader {
   struct End {
     double per_moment = 0.0;  ///< of the node next to it [rad/(N m)]
     double natural = 0.0;     ///< without stress [rad]
+    Vec3 lengths = Vec3::Zero();  ///< by the curvature at the nodes from the end on [m]
   };
 
   template <class Curvature>
@@ -133,9 +144,11 @@ class LegReader {
       const std::size_t number = to_size(leg_.first_bend + node - first);
       const auto constants = bends.constants[number];
       const auto dofs = bends.dofs[number];
-      moments_[to_size(node)] = [constants, dofs](const Vector& x) {
-        const auto [before, after] = PlanarBend<Curvature>::edges(gather(dofs, x));
-        return bend_response<Curvature>(constants.stiffness_per_length, constants.rest_kappa,
+      const ActuatedRest rest(constants.actuated, 1, model);
+      moments_[to_size(node)] = [constants, dofs, rest](const Model& now, const State& state) {
+        const auto [before, after] = PlanarBend<Curvature>::edges(gather(dofs, state.positions));
+        return bend_response<Curvature>(constants.stiffness_per_length,
+                                        constants.rest_kappa + rest.value(0, now, state),
                                         angle_between(before, after))
             .moment;
       };
@@ -149,10 +162,14 @@ class LegReader {
     const auto constants = list.constants[number];
     const auto dofs = list.dofs[number];
     const double sign = from_start ? 1.0 : -1.0;
+    const ActuatedRest rest(constants.actuated, Kernel::kAngles, model);
     for (int k = 0; k < Kernel::kAngles; ++k) {
       const Index node = from_start ? k : leg_.num_cells() - k;
-      moments_[to_size(node)] = [constants, dofs, sign, k](const Vector& x) {
-        return sign * Kernel::moments(constants, gather(dofs, x))[k];
+      moments_[to_size(node)] = [constants, dofs, sign, k, rest](const Model& now,
+                                                                 const State& state) {
+        typename Kernel::Angles natural = constants.rest;
+        for (int i = 0; i < Kernel::kAngles; ++i) natural[i] += rest.value(i, now, state);
+        return sign * Kernel::moments(constants, natural, gather(dofs, state.positions))[k];
       };
     }
   }
@@ -184,24 +201,37 @@ class LegReader {
   [[nodiscard]] double length(Index edge) const {
     return rod_.edge_length[to_size(leg_.first + edge)];
   }
-  [[nodiscard]] Vec2 vector(Index edge, const Model& model, const Vector& x) const {
-    return along_edge<2>(rod_.edge(leg_.first + edge, model), x);
+  [[nodiscard]] Vec2 vector(Index edge, const Model& model, const State& state) const {
+    return along_edge<2>(rod_.edge(leg_.first + edge, model), state.positions);
   }
-  [[nodiscard]] double turn(Index node, const Model& model, const Vector& x) const {
-    return angle_between(vector(node - 1, model, x), vector(node, model, x));
+  [[nodiscard]] double turn(Index node, const Model& model, const State& state) const {
+    return angle_between(vector(node - 1, model, state), vector(node, model, state));
   }
-  static double slope_of(const LegEnd& end, const Model& model, const Vector& x) {
-    return end.direction + x[model.dofs.rotation(end.rotation)];
+  static double slope_of(const LegEnd& end, const Model& model, const State& state) {
+    return end.direction + state.positions[model.dofs.rotation(end.rotation)];
   }
   /// Direction [rad] of an edge within half a turn of a slope.
   [[nodiscard]] double edge_beside(double slope, Index edge, const Model& model,
-                                   const Vector& x) const {
-    return slope + angle_between({std::cos(slope), std::sin(slope)}, vector(edge, model, x));
+                                   const State& state) const {
+    return slope + angle_between({std::cos(slope), std::sin(slope)}, vector(edge, model, state));
   }
   /// By how much the outermost edge has turned against the tangent at an end where no moment acts.
-  [[nodiscard]] double lean(const End& end, Index beside, const Vector& x) const {
-    const double sign = &end == &start_ ? 1.0 : -1.0;
-    return end.natural + sign * end.per_moment * moment(beside, x);
+  [[nodiscard]] double lean(const End& end, Index beside, const Model& model,
+                            const State& state) const {
+    const bool from_start = &end == &start_;
+    const double sign = from_start ? 1.0 : -1.0;
+    double lean = end.natural + sign * end.per_moment * moment(beside, model, state);
+    for (Index k = 0; k <= std::min<Index>(leg_.num_cells(), 2); ++k) {
+      const Index node = from_start ? k : leg_.num_cells() - k;
+      lean += sign * end.lengths[k] * actuated(node, model, state);
+    }
+    return lean;
+  }
+  /// Curvature that actuations give the rod at a node, on the side of the leg [1/m].
+  [[nodiscard]] double actuated(Index node, const Model& model, const State& state) const {
+    if (!actuated_.is_strained()) return 0.0;
+    const double s = rod_.arc_length[to_size(leg_.first + node)];
+    return actuated_.strains(s, node == leg_.num_cells(), model, state)[0];
   }
   /// Share of the edge before a node in the turn between the middles of its two edges.
   [[nodiscard]] double share_before(Index node) const {
@@ -209,18 +239,22 @@ class LegReader {
   }
 
   /// The force [N] that the rod behind an edge exerts on the rod before it.
-  [[nodiscard]] Vec2 edge_force(Index edge, const Model& model, const Vector& x) const {
-    const Vec2 along = vector(edge, model, x);
+  [[nodiscard]] Vec2 edge_force(Index edge, const Model& model, const State& state) const {
+    const Vec2 along = vector(edge, model, state);
     const double now = along.norm();
-    const double tension = rod_.EA * (now / length(edge) - 1.0);
-    const double shear = (moment(edge, x) - moment(edge + 1, x)) / now;
+    const double extension =
+        now - length(edge) - elongations_[to_size(edge)].value(0, model, state);
+    const double tension = rod_.EA * extension / length(edge);
+    const double shear = (moment(edge, model, state) - moment(edge + 1, model, state)) / now;
     return (tension * along + shear * perpendicular(along)) / now;
   }
 
   Leg leg_;
   RodMesh rod_;
+  ActuatedShape actuated_;
   std::vector<MomentReader> moments_;  // of each node
-  std::vector<double> natural_;        // [1/m] of each node
+  std::vector<ActuatedRest> elongations_;  // [m] of each edge
+  std::vector<double> natural_;            // [1/m] of each node
   End start_;
   End end_;
 };
@@ -243,30 +277,29 @@ class LegField : public RodField {
                               const State& state) const override {
     const auto& [number, node] = places_[i];
     const LegReader& leg = legs_[number];
-    const Vector& x = state.positions;
     switch (quantity_) {
       case LegQuantity::Moment:
-        return leg.moment(node, x);
+        return leg.moment(node, model, state);
       case LegQuantity::Curvature:
-        return leg.curvature(node, x);
+        return leg.curvature(node, model, state);
       case LegQuantity::NaturalCurvature:
-        return leg.natural_curvature(node);
+        return leg.natural_curvature(node, model, state);
       case LegQuantity::Strain:
-        return leg.tension(node, model, x) / EA_;
+        return leg.tension(node, model, state) / EA_;
       case LegQuantity::Tension:
-        return leg.tension(node, model, x);
+        return leg.tension(node, model, state);
       case LegQuantity::ForceX:
-        return leg.force(node, model, x).x();
+        return leg.force(node, model, state).x();
       case LegQuantity::ForceY:
-        return leg.force(node, model, x).y();
+        return leg.force(node, model, state).y();
       case LegQuantity::TangentX:
-        return std::cos(leg.slope(node, model, x));
+        return std::cos(leg.slope(node, model, state));
       case LegQuantity::TangentY:
-        return std::sin(leg.slope(node, model, x));
+        return std::sin(leg.slope(node, model, state));
       case LegQuantity::Slope:
         break;
     }
-    return leg.slope(node, model, x);
+    return leg.slope(node, model, state);
   }
   [[nodiscard]] bool smooth_at(std::size_t i) const override { return smooth_[i]; }
 

@@ -139,13 +139,45 @@ class JointedSceneCheck {
     for (int i = 0; i < static_cast<int>(scene.rods.size()); ++i) {
       check_rod(scene.rods[static_cast<std::size_t>(i)], {"rods", i});
     }
-    if (!scene.actuations.empty()) lacks({"actuation"}, "actuation");
+    for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
+      Support& support = context_.scene.supports[static_cast<std::size_t>(i)];
+      need_point(support.rod, support.at, Path{"supports", i} / "at");
+    }
+    for (int i = 0; i < static_cast<int>(scene.loads.size()); ++i) {
+      std::visit(
+          [&](auto& what) {
+            using Kind = std::decay_t<decltype(what)>;
+            if constexpr (std::is_base_of_v<AtPlace, Kind>) {
+              need_point(what.rod, what.at, Path{"loads", i, Kind::kKey} / "at");
+            }
+          },
+          context_.scene.loads[static_cast<std::size_t>(i)].what);
+    }
+    for (int i = 0; i < static_cast<int>(scene.actuations.size()); ++i) {
+      const Actuation& actuation = scene.actuations[static_cast<std::size_t>(i)];
+      if (actuation.what == Actuated::Length) continue;
+      for (const auto& [key, s] : {std::pair{"from", actuation.from}, {"to", actuation.to}}) {
+        Location at;
+        at.kind = Location::Kind::ArcLength;
+        at.arc_length = s;
+        if (std::isfinite(s)) need_point(actuation.rod, at, Path{"actuation", i} / key);
+      }
+    }
     if (scene.is_dynamic() && scene.given_time.integrator == "energy_momentum") {
       lacks({"time", "integrator"}, "'energy_momentum'");
     }
   }
 
  private:
+  /// On a rod drawn by points all that acts at a point, and each border of an actuation, is at one.
+  void need_point(const std::string& name, Location& at, const Path& path) {
+    const auto rod = context_.rods.find(name);
+    if (rod == context_.rods.end() || context_.diagnostics.under(path)) return;
+    const auto number = static_cast<std::size_t>(rod->second);
+    if (!context_.lines[number] || context_.scene.given_rods[number].nodes) return;
+    context_.nodes_at(rod->second, at, path, true);
+  }
+
   void check_rod(const Rod& rod, const Path& path) {
     if (rod.closed) lacks(path / "closed", "a closed rod");
     if (rod.rest_length) lacks(path / "rest_length", "'rest_length'");

@@ -269,8 +269,29 @@ void place_leg_ends(CheckContext& context) {
     RodPlaces& here = places[static_cast<std::size_t>(rod->second)];
     (acts ? here.acting : here.read).push_back(&at);
   });
+  // Where an actuated curvature begins or ends it jumps.
+  std::vector<std::pair<double*, Location>> borders;
+  for (Actuation& actuation : scene.actuations) {
+    if (actuation.what == Actuated::Length) continue;
+    for (double* border : {&actuation.from, &actuation.to}) {
+      Location at;
+      at.kind = Location::Kind::ArcLength;
+      at.arc_length = *border;
+      borders.emplace_back(border, at);
+    }
+  }
+  for (std::size_t i = 0; i < borders.size(); ++i) {
+    const auto rod = context.rods.find(scene.actuations[i / 2].rod);
+    if (rod != context.rods.end()) {
+      places[static_cast<std::size_t>(rod->second)].acting.push_back(&borders[i].second);
+    }
+  }
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (context.lines[i]) place_leg_ends(context, i, places[i]);
+  }
+  for (auto& [border, at] : borders) {
+    if (at.kind == Location::Kind::ArcLength) *border = at.arc_length;
+    if (at.kind == Location::Kind::Start) *border = 0.0;
   }
 }
 

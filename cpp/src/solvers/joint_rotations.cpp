@@ -39,16 +39,16 @@ JointRotations::JointRotations(const Model& model) : model_(model) {
   gradient_.setZero(size);
   stiffness_.resize(size, size);
   for (Index i = 0; i < size; ++i) stiffness_.coeffRef(i, i) = 1.0;
-  assemble(model.initial_positions);
+  here_ = {model.initial_positions, Vector::Zero(model.tables.size())};
+  assemble(here_);
   stiffness_.makeCompressed();
   solver_.analyzePattern(stiffness_);
 }
 
 /// Sets the gradient, and the stiffness, of the energy by the free rotations.
-void JointRotations::assemble(const Vector& coordinates) {
+void JointRotations::assemble(const Configuration& here) {
   gradient_.setZero();
   stiffness_ *= 0.0;
-  const Configuration here{coordinates, {}};
   for_each_jointed_list(model_, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     constexpr int kNodes = Kernel::kDofs - Kernel::kJoints;  // coordinates of nodes
@@ -56,7 +56,7 @@ void JointRotations::assemble(const Vector& coordinates) {
     for (std::size_t e = 0; e < list.size(); ++e) {
       const auto& dofs = list.dofs[e];
       evaluate_element<Kernel, Derivatives::Hessian>(list.constants[e], here,
-                                                     gather(dofs, coordinates), term);
+                                                     gather(dofs, here.coordinates), term);
       for (Index a = kNodes; a < Kernel::kDofs; ++a) {
         const Index row = number_[to_size(dofs[to_size(a)] - model_.dofs.rotation(0))];
         if (row < 0) continue;
@@ -76,8 +76,10 @@ void JointRotations::settle(const Vector& controls, const Vector& extra_force,
   constexpr int kMost = 20;
   constexpr double kRounding = 1e-14;  // [rad], and of a rotation
   if (free_.empty()) return;
+  here_.controls = controls;
   for (int iteration = 0; iteration < kMost; ++iteration) {
-    assemble(coordinates);
+    here_.coordinates = coordinates;
+    assemble(here_);
     for (const auto& [dof, control, weight] : moments_) {
       gradient_[number_[to_size(dof - model_.dofs.rotation(0))]] -= weight * controls[control];
     }

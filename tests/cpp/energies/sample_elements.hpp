@@ -248,6 +248,7 @@ typename EndCell<Curvature, Edges, Joints>::Constants sample_constants(
   c.stiffness = Stiffness::Identity() + root * root.transpose();
   for (double& rest : c.rest) rest = uniform(random, -1.0, 1.0);
   for (double& angle : c.direction) angle = uniform(random, -0.5, 0.5);
+  c.actuated = {kStrains};
   return c;
 }
 

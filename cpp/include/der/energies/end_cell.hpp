@@ -8,6 +8,7 @@
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/curvature_measure.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {
@@ -44,16 +45,28 @@ struct EndCell {
     /// Angle [rad] of the leg's tangent at each joint, along the element, where the joint has not
     /// turned.
     std::array<double, Joints> direction{};
+    NaturalStrainOffset actuated{};  ///< of `rest`: an entry for each angle
+
+    [[nodiscard]] Angles natural(const Vector& controls) const {
+      if (actuated.entry < 0) return rest;
+      return rest + controls.segment<kAngles>(actuated.entry);
+    }
   };
 
   /// The moments [N m] at the joint and at the nodes behind it, along the element: the derivatives
-  /// of the energy by the turning angles.
-  static Angles moments(const Constants& c, const Coordinates& x) { return Response(c, x).moment; }
+  /// of the energy by the turning angles. `natural` [-] has the place of the natural kappa.
+  static Angles moments(const Constants& c, const Angles& natural, const Coordinates& x) {
+    return Response(c, natural, x).moment;
+  }
+  /// The derivatives of the energy by kappa [N m].
+  static Angles loads(const Constants& c, const Angles& natural, const Coordinates& x) {
+    return Response(c, natural, x).load;
+  }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& /*here*/, const Coordinates& x,
+  static void evaluate(const Constants& c, const Configuration& here, const Coordinates& x,
                        LocalTerm<kDofs>& out) {
-    const Response response(c, x);
+    const Response response(c, c.natural(here.controls), x);
     out.energy = response.energy;
     if constexpr (D == Derivatives::Energy) return;
 
@@ -99,10 +112,11 @@ struct EndCell {
   struct Response {
     std::array<Vec2, kDirections> vectors;  ///< whose directions count; unit vectors of joints
     double energy = 0.0;
+    Angles load;  ///< by kappa
     Angles moment;
     Stiffness stiffness;
 
-    Response(const Constants& c, const Coordinates& x) {
+    Response(const Constants& c, const Angles& natural, const Coordinates& x) {
       const auto tangent = [&](int joint) {
         const double angle = c.direction[std::size_t(joint)] + x[2 * kNodes + joint];
         return Vec2(std::cos(angle), std::sin(angle));
@@ -119,11 +133,11 @@ struct EndCell {
       for (int i = 0; i < kAngles; ++i) {
         const CurvatureValue k = Curvature::of(
             angle_between(vectors[std::size_t(i)], vectors[std::size_t(i) + 1]));
-        excess[i] = k.kappa - c.rest[i];
+        excess[i] = k.kappa - natural[i];
         first[i] = k.first;
         second[i] = k.second;
       }
-      const Angles load = c.stiffness * excess;
+      load = c.stiffness * excess;
       energy = 0.5 * excess.dot(load);
       moment = first.cwiseProduct(load);
       stiffness = first.asDiagonal() * c.stiffness * first.asDiagonal();

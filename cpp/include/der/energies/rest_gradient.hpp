@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/core/types.hpp"
+#include "der/energies/end_cell.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
@@ -115,6 +116,20 @@ struct RestGradient<SpatialClamp<Curvature>> : BendingRestGradient<SpatialClamp<
       moments[2] += 0.5 * c.side * (moments[0] * strain.kappa_2 - moments[1] * strain.kappa_1);
     }
     return moments;
+  }
+};
+
+template <class Curvature, int Edges, int Joints>
+struct RestGradient<EndCell<Curvature, Edges, Joints>> {
+  using Kernel = EndCell<Curvature, Edges, Joints>;
+  static constexpr bool kExists = true;
+  static constexpr int kSize = Kernel::kAngles;
+  static const NaturalStrainOffset& shift(const typename Kernel::Constants& c) {
+    return c.actuated;
+  }
+  static typename Kernel::Angles of(const typename Kernel::Constants& c, const Configuration& here,
+                                    const typename Kernel::Coordinates& x) {
+    return -Kernel::loads(c, c.natural(here.controls), x);
   }
 };
 

@@ -34,6 +34,7 @@ struct ActuatedStretch {
 struct NaturalStrainEntries {
   Index edges = -1;    ///< entry of the first edge; -1: no actuation changes lengths
   Index cells = -1;    ///< entry of the first cell; -1: none changes curvatures or twist
+  Index legs = -1;     ///< entry of the first end cell of a leg; -1: as of cells, or no legs
   Index springs = -1;  ///< entry of the first place with springs; -1: as of cells, or no springs
   Index strains = 1;   ///< entries of a cell and of a place: 1 in a plane, 3 in space
 
@@ -46,6 +47,11 @@ struct NaturalStrainEntries {
   [[nodiscard]] NaturalStrainOffset cell(Index position, bool leaves) const {
     return {cells < 0 ? -1 : cells + strains * (2 * position + (leaves ? 1 : 0))};
   }
+  /// Entries of an end cell of a leg, by the leg's number in the rod: one for each of its angles.
+  [[nodiscard]] NaturalStrainOffset end_cell(std::size_t leg, bool at_start) const {
+    return {legs < 0 ? -1 : legs + kMostAngles * (2 * static_cast<Index>(leg) + (at_start ? 0 : 1))};
+  }
+  static constexpr Index kMostAngles = 3;
   /// Entry of a place with springs against turning, by its number among them.
   [[nodiscard]] NaturalStrainOffset spring(Index number) const {
     return {springs < 0 ? -1 : springs + strains * number};

@@ -27,6 +27,10 @@ struct Leg {
   Index end_cell = -1;
   Index first_bend = -1;  ///< the bends at nodes between end cells follow one another
   [[nodiscard]] Index num_cells() const { return last - first; }
+  /// Whether the end cell of a joint has the bending at a node: it is next to the joint.
+  [[nodiscard]] bool in_end_cell(Index place) const {
+    return (start.rotation >= 0 && place == first + 1) || (end.rotation >= 0 && place == last - 1);
+  }
 };
 
 /// The turning angles next to an end of a leg, times EI, that a moment makes which is linear along

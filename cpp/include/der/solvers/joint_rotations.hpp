@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -20,12 +21,13 @@ class JointRotations {
   void settle(const Vector& controls, const Vector& extra_force, Vector& coordinates);
 
  private:
-  void assemble(const Vector& coordinates);
+  void assemble(const Configuration& here);
 
   const Model& model_;
   std::vector<Index> free_;                // degrees of freedom
   std::vector<Index> number_;              // of each rotation among the free ones; -1: held
   std::vector<ControlledForce> moments_;   // on these
+  Configuration here_;
   Vector gradient_;                        // of the energy, then less the moments [N m]
   Eigen::SparseMatrix<double> stiffness_;  // lower triangle [N m]
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;

@@ -1,6 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
+#include <variant>
 
+#include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
 

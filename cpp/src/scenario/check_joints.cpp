@@ -154,6 +154,10 @@ class JointedSceneCheck {
             if constexpr (std::is_base_of_v<AtPlace, Kind>) {
               need_point(what.rod, what.at, Path{"loads", i, Kind::kKey} / "at");
             }
+            if constexpr (std::is_same_v<Kind, Moment>) need_bending(what.rod, i, Kind::kKey);
+            if constexpr (std::is_same_v<Kind, PointForce>) {
+              if (what.follower) need_bending(what.rod, i, Kind::kKey);
+            }
           },
           context_.scene.loads[static_cast<std::size_t>(i)].what);
     }
@@ -173,6 +177,15 @@ class JointedSceneCheck {
   }
 
  private:
+  void need_bending(const std::string& name, int load, const char* key) {
+    const auto rod = context_.rods.find(name);
+    if (rod == context_.rods.end()) return;
+    if (!does_not_bend(context_.scene.rods[static_cast<std::size_t>(rod->second)])) return;
+    report(Path{"loads", load, key},
+           fmt::format("rod '{}' has no stiffness against bending, EI: it neither bears a moment nor "
+                       "turns a force",
+                       name));
+  }
   /// On a rod drawn by points all that acts at a point, and each border of an actuation, is at one.
   void need_point(const std::string& name, Location& at, const Path& path) {
     const auto rod = context_.rods.find(name);

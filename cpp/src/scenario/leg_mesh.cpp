@@ -184,15 +184,24 @@ void place_leg_ends(CheckContext& context, std::size_t number, RodPlaces& places
   line = RestLine(rod.points);
 }
 
-/// Gives all that stands on a joint the place of the joint's first member.
+/// Gives all that stands on a joint the place of the joint's first member that bends, or else of
+/// its first.
 void name_members(CheckContext& context) {
   SceneText& scene = context.scene;
+  const auto bends = [&](const JointMember& member) {
+    const auto rod = context.rods.find(member.rod);
+    return rod != context.rods.end() &&
+           !does_not_bend(scene.rods[static_cast<std::size_t>(rod->second)]);
+  };
+  // A rod without bending stiffness does not follow the joint's rotation.
   const auto take = [&](const std::string& name, const Path& path, std::string& rod,
                         Location& at) -> const Joint* {
     const Joint* joint = find_joint(context, name, path);
     if (joint == nullptr || joint->of.empty()) return nullptr;
-    rod = joint->of.front().rod;
-    at = joint->of.front().at;
+    const auto found = std::find_if(joint->of.begin(), joint->of.end(), bends);
+    const JointMember& member = found == joint->of.end() ? joint->of.front() : *found;
+    rod = member.rod;
+    at = member.at;
     return joint;
   };
   const auto need_rigid = [&](const Joint* joint, const Path& path) {

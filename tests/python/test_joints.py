@@ -1,0 +1,130 @@
+"""Scenes with joints from Python: meshes, states, readings, pictures."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import der
+import matplotlib
+import numpy as np
+import pytest
+
+matplotlib.use("Agg")
+
+STIFFNESS = {"stiffness": {"EA": 1e4, "EI": 1.0, "mass_per_length": 1.0}}
+
+
+def frame(nodes: int = 11, **changes: Any) -> dict[str, Any]:
+    """A column and a beam with a rigid corner, loaded at the corner and inside the beam."""
+    scene: dict[str, Any] = {
+        "rods": [
+            {"name": "column", "nodes": nodes, "from": [0, 0], "to": [0, 1]},
+            {"name": "beam", "nodes": nodes, "from": [0, 1], "to": [1, 1]},
+        ],
+        "joints": [
+            {"name": "corner", "of": [{"rod": "column", "at": "end"}, {"rod": "beam", "at": 0}]}
+        ],
+        "supports": [{"rod": "column", "at": "start", "clamp": True}],
+        "loads": [
+            {"moment": {"joint": "corner", "moment": 0.2}},
+            {"point_force": {"rod": "beam", "at": 0.33, "force": [0, -1]}},
+        ],
+        "output": {"probes": {"turn": {"joint": "corner", "quantity": "rotation"}}},
+        "analysis": "static",
+    }
+    for rod in scene["rods"]:
+        rod["cross_section"] = STIFFNESS
+    return scene | changes
+
+
+def in_motion(**time: Any) -> dict[str, Any]:
+    scene = frame(time={"duration": 0.5, "step": 0.01, **time})
+    del scene["analysis"]
+    return scene
+
+
+def test_rods_share_the_node_of_a_joint_and_legs_end_where_something_acts() -> None:
+    model = der.Model(der.Scenario.from_dict(frame()))
+    column, beam = model.rods
+    assert column.nodes[-1] == beam.nodes[0]
+    assert len(beam.nodes) == 11
+    assert np.min(np.abs(beam.arc_lengths - 0.33)) < 1e-12
+    # 10 cells for legs of 0.33 and 0.67, none much longer than another.
+    assert np.ptp(np.diff(beam.arc_lengths)) < 0.02
+
+
+def test_subdivided_legs_keep_their_nodes() -> None:
+    scene = frame()
+    coarse = der.Model(der.Scenario.from_dict(scene)).rods[1].arc_lengths
+    scene["rods"][1]["subdivide"] = 3
+    fine = der.Model(der.Scenario.from_dict(scene)).rods[1].arc_lengths
+    np.testing.assert_allclose(fine[::3], coarse, rtol=0, atol=1e-15)
+
+
+def test_places_that_are_nearly_one_are_one() -> None:
+    scene = frame()
+    scene["loads"] += [{"point_force": {"rod": "beam", "at": 0.33 + 1e-5, "force": [1, 0]}}]
+    scene["loads"] += [{"point_force": {"rod": "beam", "at": 1 - 1e-5, "force": [1, 0]}}]
+    beam = der.Model(der.Scenario.from_dict(scene)).rods[1]
+    assert np.sum(np.abs(beam.arc_lengths - 0.33) < 1e-3) == 1
+    assert np.diff(beam.arc_lengths)[-1] > 0.05
+
+
+def test_fields_have_two_values_where_legs_meet() -> None:
+    result = der.run(der.Scenario.from_dict(frame()))
+    places, values = result.along("beam", "moment")
+    twice = np.flatnonzero(np.diff(places) == 0)
+    assert np.all(np.abs(places[twice] - 0.33) < 1e-12)
+    assert len(twice) == 1
+    # The force stands on 0.33: before it the moment is linear, beyond it the rod is free.
+    assert values[-1][0] == pytest.approx(-0.33, rel=0.02)
+    assert np.abs(values[-1][twice[0] + 1 :]).max() < 1e-9
+
+
+def test_a_state_goes_on_bit_for_bit() -> None:
+    simulation = der.Simulation(in_motion())
+    simulation.step(5)
+    saved = simulation.save_state()
+    simulation.step(5)
+    other = der.Simulation(in_motion())
+    other.restore_state(pickle.loads(pickle.dumps(saved)))
+    other.step(5)
+    np.testing.assert_array_equal(other.positions, simulation.positions)
+
+
+def test_members_of_a_batch_are_simulations() -> None:
+    batch = der.Batch(in_motion(), 5, 2)
+    batch.step(7)
+    alone = der.Simulation(in_motion())
+    alone.step(7)
+    for member in batch.positions:
+        np.testing.assert_array_equal(member, alone.positions)
+
+
+def test_a_motion_starts_from_a_saved_equilibrium(tmp_path: Path) -> None:
+    first = der.run(der.Scenario.from_dict(frame()), out=tmp_path / "rest")
+    assert first.summary["status"] == "static_converged"
+    scene = in_motion() | {"start_from": str(tmp_path / "rest")}
+    moved = der.run(der.Scenario.from_dict(scene))
+    turn = first.summary["probes"]["turn"]["final"]
+    assert turn != 0.0
+    for bound in ("min", "max"):
+        assert moved.summary["probes"]["turn"][bound] == pytest.approx(turn, abs=1e-7)
+
+
+def test_verify_refines_legs() -> None:
+    found = der.verify(der.Scenario.from_dict(frame(nodes=6)))
+    assert found.ok
+
+
+def test_pictures_show_loads_and_clamps_at_joints(tmp_path: Path) -> None:
+    scene = in_motion()
+    scene["supports"][0]["prescribe"] = {"angle": {"times": [0, 0.5], "values": [0, 0.4]}}
+    result = der.run(der.Scenario.from_dict(scene))
+    [held] = result.held_nodes(len(result.times) - 1)
+    assert held.tangent_angle == pytest.approx(np.pi / 2 + 0.4)
+    figure = result.plot()
+    figure.savefig(tmp_path / "frame.png")
+    assert (tmp_path / "frame.png").stat().st_size > 5000

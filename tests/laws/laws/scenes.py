@@ -464,6 +464,27 @@ THINGS: dict[str, tuple[tuple[str, ...], Thing]] = {
     # Joints
     "joint": (FLAT, _joined("rigid")),
     "hinge": (FLAT, _joined("hinge")),
+    "joint beside actuations": (
+        FLAT,
+        lambda m: {
+            **_joined("rigid")(m),
+            "actuation": [
+                {"name": "a", "rod": "arm", "from": 0.1, "to": 0.33, "natural_curvature": 1.1},
+                {"name": "b", "rod": "arm", "natural_curvature": 0.4, "profile": "smooth"},
+                {"name": "c", "rod": "foot", "elongation": 0.05},
+            ],
+        },
+    ),
+    "joint beside a follower force": (
+        FLAT,
+        lambda m: {
+            **_joined("rigid")(m),
+            "loads": [
+                {"point_force": {"rod": "arm", "at": 0.21, "force": _v(m), "follower": True}},
+                {"point_force": {"joint": "ankle", "force": [0.3, 0.1], "follower": True}},
+            ],
+        },
+    ),
     # Rods
     "natural curvature": (TWISTS, lambda m: {"rod": {"natural_curvature": _curvature(m, 0.8)}}),
     "natural curvatures": (TWISTS, lambda m: {"rod": {"natural_curvature": _curves(m)}}),

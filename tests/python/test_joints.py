@@ -86,6 +86,36 @@ def test_fields_have_two_values_where_legs_meet() -> None:
     assert np.abs(values[-1][twice[0] + 1 :]).max() < 1e-9
 
 
+def test_rods_of_other_lengths_pull_at_their_joint() -> None:
+    """Two bars in a row between fixed ends, drawn 1 and 2 long, 0.98 and 2.01 without stress."""
+    stiffness = {"stiffness": {"EA": 100.0, "EI": 0.01, "mass_per_length": 1.0}}
+    scene = {
+        "rods": [
+            {"name": "a", "nodes": 4, "from": [0, 0], "to": [1, 0], "rest_length": 0.98},
+            {"name": "b", "nodes": 7, "from": [1, 0], "to": [3, 0], "rest_length": 2.01},
+        ],
+        "joints": [{"name": "j", "of": [{"rod": "a", "at": "end"}, {"rod": "b", "at": "start"}]}],
+        "supports": [
+            {"rod": "a", "at": "start", "clamp": True},
+            {"rod": "b", "at": "end", "clamp": True},
+        ],
+        "analysis": "static",
+        "output": {
+            "probes": {
+                "x": {"joint": "j", "quantity": "x"},
+                "tension": {"rod": "a", "at": 0.5, "quantity": "tension"},
+            }
+        },
+    }
+    for rod in scene["rods"]:
+        rod["cross_section"] = stiffness
+    probes = der.run(der.Scenario.from_dict(scene)).summary["probes"]
+    # The same force in both: 100 (x/0.98 - 1) = 100 ((3 - x)/2.01 - 1).
+    x = 3.0 * 0.98 / (0.98 + 2.01)
+    assert probes["x"]["final"] == pytest.approx(x, abs=1e-10)
+    assert probes["tension"]["final"] == pytest.approx(100.0 * (x / 0.98 - 1.0), abs=1e-7)
+
+
 def test_a_state_goes_on_bit_for_bit() -> None:
     simulation = der.Simulation(in_motion())
     simulation.step(5)

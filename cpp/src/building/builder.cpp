@@ -135,8 +135,10 @@ Vec2 director_across(const scenario::Rod& rod, const RodMesh& layout, const Mode
 }
 
 /// The only place that makes a chain of nodes; everything after it reads the layout's lists.
+/// In a scene with joints rods share nodes: the reference is then as drawn, and rest lengths are
+/// those of the edges alone.
 RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section,
-                std::vector<Index> nodes, Model& model) {
+                std::vector<Index> nodes, bool has_joints, Model& model) {
   RodMesh layout;
   layout.name = rod.name;
   layout.closed = rod.closed;
@@ -154,7 +156,8 @@ RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section,
   layout.nodes = std::move(nodes);
   layout.arc_length.reserve(rod.points.size());
   layout.edge_length.reserve(rod.points.size());
-  const double magnified = scenario::rest_scale(rod);  // exact places without a rest length
+  const double scale = scenario::rest_scale(rod);
+  const double magnified = has_joints ? 1.0 : scale;  // exact places without a rest length
   double s = 0.0;
   for (std::size_t i = 0; i < rod.points.size(); ++i) {
     const Index node = layout.nodes[i];
@@ -170,6 +173,7 @@ RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section,
     }
     if (i > 0) {
       layout.edge_length.push_back(
+          scale / magnified *
           (rest_position(model, node) - rest_position(model, layout.nodes[i - 1])).norm());
       s += layout.edge_length.back();
     }
@@ -266,7 +270,7 @@ void lay_out_rods(const scenario::Scene& scene, std::vector<std::vector<Index>> 
   for (std::size_t i = 0; i < scene.rods.size(); ++i) {
     const scenario::Rod& rod = scene.rods[i];
     const SectionProperties section = section_properties(rod);
-    RodMesh layout = lay_out(rod, section, std::move(nodes[i]), model);
+    RodMesh layout = lay_out(rod, section, std::move(nodes[i]), !scene.joints.empty(), model);
     layout.mass_per_length = section.mass_per_length;
     set_natural_curvature(rod, layout);
     set_natural_twist(rod, layout);

@@ -126,7 +126,7 @@ std::vector<std::vector<JoinedPlace>> joined_places(const scenario::Scene& scene
     for (const auto& member : joint.of) {
       const auto rod = std::find_if(scene.rods.begin(), scene.rods.end(),
                                     [&](const auto& other) { return other.name == member.rod; });
-      const scenario::RestLine line(rod->points);
+      const scenario::RestLine line(rod->points, rod->closed, rod->rest_length);
       places.push_back({static_cast<std::size_t>(rod - scene.rods.begin()),
                         *line.node_at(line.arc_length_of(member.at))});
     }

@@ -197,7 +197,6 @@ class JointedSceneCheck {
 
   void check_rod(const Rod& rod, const Path& path) {
     if (rod.closed) lacks(path / "closed", "a closed rod");
-    if (rod.rest_length) lacks(path / "rest_length", "'rest_length'");
     if (damping_of(rod).any()) lacks(path, "internal damping");
   }
   void lacks(const Path& where, const std::string& what) {

@@ -181,7 +181,7 @@ void place_leg_ends(CheckContext& context, std::size_t number, RodPlaces& places
     return;
   }
   place_nodes(text, rod, ends, line->length());
-  line = RestLine(rod.points);
+  line = RestLine(rod.points, false, rod.rest_length);
 }
 
 /// Gives all that stands on a joint the place of the joint's first member that bends, or else of

@@ -35,7 +35,7 @@ class LegReader {
         find_moments<TangentCurvature>(model);
       }
     }
-    find_natural(model);
+    find_curvatures(model);
     for (Index edge = leg.first; edge < leg.last; ++edge) {
       elongations_.emplace_back(rod.natural_strain_entries.edge(edge), 1, model);
     }
@@ -71,24 +71,29 @@ class LegReader {
     return elastic + natural_curvature(node, model, state);
   }
 
-  /// The angle of the tangent from the x axis [rad].
+  /// The angle of the tangent from the x axis [rad]: between nodes linear through the middles of
+  /// the edges, whose directions it has there.
   [[nodiscard]] double slope(Index node, const Model& model, const State& state) const {
     const Index last = leg_.num_cells();
+    const bool from_end = leg_.start.rotation < 0 && leg_.end.rotation >= 0;
     if (node == 0 && leg_.start.rotation >= 0) return slope_of(leg_.start, model, state);
     if (node == last && leg_.end.rotation >= 0) return slope_of(leg_.end, model, state);
-    if (leg_.start.rotation < 0 && leg_.end.rotation >= 0) {
-      // From the joint at the end back.
-      double edge = edge_beside(slope_of(leg_.end, model, state), last - 1, model, state);
-      for (Index k = last - 1; k > node; --k) edge -= turn(k, model, state);
-      return node == 0 ? edge - lean(start_, 1, model, state) : edge - share_before(node) * turn(node, model, state);
+    double edge = 0.0;  // direction of the edge before the node, or of the first one
+    if (from_end) {
+      edge = edge_beside(slope_of(leg_.end, model, state), last - 1, model, state);
+      for (Index k = last - 1; k >= std::max<Index>(node, 1); --k) edge -= turn(k, model, state);
+    } else {
+      edge = edge_beside(leg_.start.rotation >= 0 ? slope_of(leg_.start, model, state)
+                                                  : leg_.start.direction,
+                         0, model, state);
+      for (Index k = 1; k < node; ++k) edge += turn(k, model, state);
     }
-    double edge = edge_beside(leg_.start.rotation >= 0 ? slope_of(leg_.start, model, state)
-                                                       : leg_.start.direction,
-                              0, model, state);
     if (node == 0) return edge - lean(start_, 1, model, state);
-    for (Index k = 1; k < node; ++k) edge += turn(k, model, state);
     if (node == last) return edge - lean(end_, last - 1, model, state);
-    return edge + (1.0 - share_before(node)) * turn(node, model, state);
+    const double before = edge + lean_in_middle(node - 1, model, state);
+    const double after = edge + turn(node, model, state) + lean_in_middle(node, model, state);
+    const double share = length(node) / (length(node - 1) + length(node));
+    return share * before + (1.0 - share) * after;
   }
 
   /// The force [N] that the rod behind a node exerts on the rod before it: linear through the
@@ -174,28 +179,27 @@ class LegReader {
     }
   }
 
-  /// Curvature without stress at the nodes: that of the drawn shape is known at inner nodes.
-  void find_natural(const Model& model) {
+  /// Curvatures at the nodes as drawn, known at inner nodes, and without stress.
+  void find_curvatures(const Model& model) {
     const Index last = leg_.num_cells();
-    natural_.assign(to_size(last) + 1, 0.0);
-    if (!rod_.natural_curvature.empty()) {
-      const auto first = rod_.natural_curvature.begin() + leg_.first;
-      natural_.assign(first, first + last + 1);
-      return;
-    }
-    if (last == 1) return;
+    drawn_.assign(to_size(last) + 1, 0.0);
     for (Index k = 1; k < last; ++k) {
-      natural_[to_size(k)] = angle_between(reference_edge(rod_, leg_.first + k - 1, model),
-                                           reference_edge(rod_, leg_.first + k, model)) /
-                             rod_.voronoi_length(leg_.first + k);
+      drawn_[to_size(k)] = angle_between(reference_edge(rod_, leg_.first + k - 1, model),
+                                         reference_edge(rod_, leg_.first + k, model)) /
+                           rod_.voronoi_length(leg_.first + k);
     }
-    const auto beyond = [&](Index near, Index far, double distance, double apart) {
-      return last == 2 ? natural_[1]
-                       : natural_[to_size(near)] +
-                             distance / apart * (natural_[to_size(near)] - natural_[to_size(far)]);
+    const auto beyond = [&](Index near, Index far, double share) {
+      return drawn_[to_size(near)] + share * (drawn_[to_size(near)] - drawn_[to_size(far)]);
     };
-    natural_.front() = beyond(1, 2, length(0), last > 2 ? length(1) : 1.0);
-    natural_.back() = beyond(last - 1, last - 2, length(last - 1), last > 2 ? length(last - 2) : 1.0);
+    if (last == 2) drawn_.front() = drawn_.back() = drawn_[1];
+    if (last > 2) {
+      drawn_.front() = beyond(1, 2, length(0) / length(1));
+      drawn_.back() = beyond(last - 1, last - 2, length(last - 1) / length(last - 2));
+    }
+    natural_ = drawn_;
+    if (rod_.natural_curvature.empty()) return;
+    const auto first = rod_.natural_curvature.begin() + leg_.first;
+    natural_.assign(first, first + last + 1);
   }
 
   [[nodiscard]] double length(Index edge) const {
@@ -233,9 +237,14 @@ class LegReader {
     const double s = rod_.arc_length[to_size(leg_.first + node)];
     return actuated_.strains(s, node == leg_.num_cells(), model, state)[0];
   }
-  /// Share of the edge before a node in the turn between the middles of its two edges.
-  [[nodiscard]] double share_before(Index node) const {
-    return length(node) / (length(node - 1) + length(node));
+  /// By how much the tangent at the middle of an edge is turned from the edge: of an outermost one,
+  /// whose end is on the curve and whose other node is beside it.
+  [[nodiscard]] double lean_in_middle(Index edge, const Model& model, const State& state) const {
+    const Index last = leg_.num_cells();
+    const auto bent = [&](Index node) {
+      return length(edge) / 12.0 * (curvature(node, model, state) - drawn_[to_size(node)]);
+    };
+    return (edge == 0 ? bent(0) : 0.0) - (edge == last - 1 ? bent(last) : 0.0);
   }
 
   /// The force [N] that the rod behind an edge exerts on the rod before it.
@@ -254,7 +263,8 @@ class LegReader {
   ActuatedShape actuated_;
   std::vector<MomentReader> moments_;  // of each node
   std::vector<ActuatedRest> elongations_;  // [m] of each edge
-  std::vector<double> natural_;            // [1/m] of each node
+  std::vector<double> drawn_;              // curvature of each node [1/m]
+  std::vector<double> natural_;            // likewise, without stress
   End start_;
   End end_;
 };

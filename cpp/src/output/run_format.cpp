@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "der/catalog/run_status.hpp"
@@ -123,11 +124,16 @@ void write_status(hid_t file, const std::string& status) {
 std::vector<SavedRod> read_rods(hid_t file, hsize_t nodes) {
   const Handle group = hdf5::open_group(file, "rods");
   std::vector<SavedRod> rods;
+  std::set<std::vector<Index>> node_lists;
   hsize_t found = 0;
   for (const std::string& name : hdf5::names_in(group.id())) {
     rods.push_back(read_rod(group.id(), name));
     found += rods.back().nodes.size();
     if (found > kMostShared * nodes) break;  // one rod under many names would fill the memory
+    // Rods that meet share nodes, but only bars of one edge share them all.
+    if (rods.back().nodes.size() > 2 && !node_lists.insert(rods.back().nodes).second) {
+      throw IoError("its rod '" + name + "' has the nodes of another one");
+    }
   }
   if (found < nodes || found > kMostShared * nodes) {
     throw IoError("its rods have " + std::to_string(found) + " nodes" +

@@ -13,35 +13,36 @@ namespace {
 /// the stiffness (L/l)^3 times as large as that of the rod, and rounding rules below that.
 constexpr double kSamePoint = 2e-5;
 
-/// The places of a rod at which something acts at a point, by the keys that name them.
-using Places = std::vector<Location*>;
+/// Why something has a place.
+enum class Role { Joint, Acts, IsRead };
 
-/// All that name a place of each rod: at `acting` something acts, at `read` a probe reads.
-struct RodPlaces {
-  Places acting;
-  Places read;
+/// A place of a rod, by the key that names it.
+struct NamedPlace {
+  Location* at = nullptr;
+  Role role = Role::Acts;
 };
+using Places = std::vector<NamedPlace>;
 
 template <class Enter>
 void for_each_place(SceneText& scene, const Enter& enter) {
   for (Joint& joint : scene.joints) {
-    for (JointMember& member : joint.of) enter(member.rod, member.at, true);
+    for (JointMember& member : joint.of) enter(member.rod, member.at, Role::Joint);
   }
-  for (Support& support : scene.supports) enter(support.rod, support.at, true);
+  for (Support& support : scene.supports) enter(support.rod, support.at, Role::Acts);
   for (Load& load : scene.loads) {
     std::visit(
         [&](auto& what) {
           if constexpr (std::is_base_of_v<AtPlace, std::decay_t<decltype(what)>>) {
-            enter(what.rod, what.at, true);
+            enter(what.rod, what.at, Role::Acts);
           }
         },
         load.what);
   }
   for (Rod& rod : scene.rods) {
-    for (Sphere& sphere : rod.spheres) enter(rod.name, sphere.at, true);
+    for (Sphere& sphere : rod.spheres) enter(rod.name, sphere.at, Role::Acts);
   }
   for (Probe& probe : scene.given_output.probes) {
-    if (probe.rod && probe.at) enter(*probe.rod, *probe.at, false);
+    if (probe.rod && probe.at) enter(*probe.rod, *probe.at, Role::IsRead);
   }
 }
 
@@ -54,27 +55,40 @@ void name_by_arc_length(const RestLine& line, Location& at) {
   at.kind = Location::Kind::ArcLength;
 }
 
-/// The places inside a rod where legs end, ascending. Those that are nearly one become one.
-std::vector<double> leg_ends(const RestLine& line, Places& acting) {
+/// The places inside a rod where legs end, ascending. Those that are nearly one become one: that of
+/// a joint, whose rods meet there, if there is one.
+std::vector<double> leg_ends(const RestLine& line, const Places& places) {
   const double near = kSamePoint * line.length();
   Places inside;
-  for (Location* at : acting) {
-    name_by_arc_length(line, *at);
-    if (at->kind != Location::Kind::ArcLength || at->arc_length > line.length()) continue;
-    if (at->arc_length <= near) {
-      at->kind = Location::Kind::Start;
-    } else if (at->arc_length >= line.length() - near) {
-      at->kind = Location::Kind::End;
+  for (const NamedPlace& place : places) {
+    Location& at = *place.at;
+    name_by_arc_length(line, at);
+    if (place.role == Role::IsRead || at.kind != Location::Kind::ArcLength) continue;
+    if (at.arc_length > line.length()) continue;
+    if (at.arc_length <= near) {
+      at.kind = Location::Kind::Start;
+    } else if (at.arc_length >= line.length() - near) {
+      at.kind = Location::Kind::End;
     } else {
-      inside.push_back(at);
+      inside.push_back(place);
     }
   }
-  std::sort(inside.begin(), inside.end(),
-            [](const Location* a, const Location* b) { return a->arc_length < b->arc_length; });
+  std::sort(inside.begin(), inside.end(), [](const NamedPlace& a, const NamedPlace& b) {
+    return a.at->arc_length < b.at->arc_length;
+  });
   std::vector<double> ends;
-  for (Location* at : inside) {
-    if (ends.empty() || at->arc_length > ends.back() + near) ends.push_back(at->arc_length);
-    at->arc_length = ends.back();
+  for (std::size_t first = 0; first < inside.size();) {
+    std::size_t last = first + 1;
+    const double from = inside[first].at->arc_length;
+    while (last < inside.size() && inside[last].at->arc_length <= from + near) ++last;
+    std::size_t chosen = first;
+    for (std::size_t i = first; i < last && inside[chosen].role != Role::Joint; ++i) {
+      if (inside[i].role == Role::Joint) chosen = i;
+    }
+    ends.push_back(inside[chosen].at->arc_length);
+    for (; first < last; ++first) {
+      if (inside[first].role != Role::Joint) inside[first].at->arc_length = ends.back();
+    }
   }
   return ends;
 }
@@ -162,14 +176,13 @@ void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, doubl
   rod.points.back() = text.to;
 }
 
-void place_leg_ends(CheckContext& context, std::size_t number, RodPlaces& places) {
+void place_leg_ends(CheckContext& context, std::size_t number, const Places& places) {
   const Path path{"rods", static_cast<int>(number)};
   std::optional<RestLine>& line = context.lines[number];
   RodText& text = context.scene.given_rods[number];
   Rod& rod = context.scene.rods[number];
   if (!text.nodes) return;  // those of a rod drawn by points stay
-  const std::vector<double> ends = leg_ends(*line, places.acting);
-  for (Location* at : places.read) name_by_arc_length(*line, *at);
+  const std::vector<double> ends = leg_ends(*line, places);
   const int least = static_cast<int>(ends.size()) + 2;
   if (*text.nodes < least) {
     context.diagnostics.add(
@@ -271,12 +284,10 @@ void place_leg_ends(CheckContext& context) {
   }
   name_members(context);
   if (scene.joints.empty()) return;
-  std::vector<RodPlaces> places(scene.rods.size());
-  for_each_place(scene, [&](const std::string& name, Location& at, bool acts) {
+  std::vector<Places> places(scene.rods.size());
+  for_each_place(scene, [&](const std::string& name, Location& at, Role role) {
     const auto rod = context.rods.find(name);
-    if (rod == context.rods.end()) return;
-    RodPlaces& here = places[static_cast<std::size_t>(rod->second)];
-    (acts ? here.acting : here.read).push_back(&at);
+    if (rod != context.rods.end()) places[static_cast<std::size_t>(rod->second)].push_back({&at, role});
   });
   // Where an actuated curvature begins or ends it jumps.
   std::vector<std::pair<double*, Location>> borders;
@@ -292,7 +303,7 @@ void place_leg_ends(CheckContext& context) {
   for (std::size_t i = 0; i < borders.size(); ++i) {
     const auto rod = context.rods.find(scene.actuations[i / 2].rod);
     if (rod != context.rods.end()) {
-      places[static_cast<std::size_t>(rod->second)].acting.push_back(&borders[i].second);
+      places[static_cast<std::size_t>(rod->second)].push_back({&borders[i].second, Role::Acts});
     }
   }
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -51,8 +51,10 @@ std::string Simulation::advice_on_steps() const {
           plan_.step / static_cast<double>(std::max<std::int64_t>(2, counters_.most_pieces)));
       break;
   }
-  constexpr const char* kConserving = "energy_momentum";  // planar only (check_spatial.cpp)
-  if (stepper_info_.name == kConserving || model().dimension != 2) return shorter;
+  constexpr const char* kConserving = "energy_momentum";  // planar, without joints (check_spatial.cpp)
+  if (stepper_info_.name == kConserving || model().dimension != 2 || model().has_rotations()) {
+    return shorter;
+  }
   return fmt::format("{}, or 'integrator: {}', which creates no energy", shorter, kConserving);
 }
 

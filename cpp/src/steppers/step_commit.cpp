@@ -63,7 +63,7 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
 /// the next step.
 void StepCommit::settle_rotations(double dt, State& state) {
   if (!model_.has_rotations()) return;
-  rotations_.settle(end_.controls, state.extra_force, state.positions);
+  state.work.loads += rotations_.settle(end_.controls, state.extra_force, state.positions);
   for (Index i = 0; i < model_.dofs.num_rotations(); ++i) {
     const Index dof = model_.dofs.rotation(i);
     if (!model_.dofs.is_free(dof)) continue;

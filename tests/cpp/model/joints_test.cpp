@@ -6,6 +6,7 @@
 #include "der/assembly/pattern.hpp"
 #include "der/building/builder.hpp"
 #include "der/model/state.hpp"
+#include "der/output/probe.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
@@ -117,6 +118,28 @@ TEST_CASE("rotations follow from the places of the nodes") {
   const double stiffness = 2.0 * 144.0 / 47.0 * (5.0 / 0.37 + 5.0 / 0.63);
   CHECK(coordinates[model.dofs.rotation(1)] - found[model.dofs.rotation(1)] ==
         doctest::Approx(0.5 / stiffness).epsilon(1e-9));
+}
+
+TEST_CASE("what a joint tells is what its rods were loaded with") {
+  // Only the moment acts: the rod before the joint bears it as it is, the rod behind it nothing.
+  Simulation simulation(Scenario::parse(
+      beam_of_two(6).to_yaml() +
+      "output:\n  probes:\n"
+      "    rotation: {joint: j, quantity: rotation}\n"
+      "    moment_a: {joint: j, leg: a, quantity: moment_z}\n"
+      "    moment_b: {joint: j, leg: b, quantity: moment_z}\n"
+      "    force_x: {joint: j, leg: a, quantity: force_x}\n"
+      "    force_y: {joint: j, leg: b, quantity: force_y}\n"
+      "    slope: {rod: b, at: end, quantity: slope}\n"));
+  simulation.settle(true);
+  const double expected[] = {0.1 * 0.37 / 2.0, -0.1, 0.0, 0.0, 0.0, 0.1 * 0.37 / 2.0};
+  const auto probes = make_probes(simulation.scenario().scene(), simulation.model());
+  for (const Probe& probe : probes) {
+    CAPTURE(probe.name());
+    const auto number = static_cast<std::size_t>(&probe - probes.data());
+    CHECK(probe.value(simulation.model(), simulation.state()) ==
+          doctest::Approx(expected[number]).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("a sudden moment on a joint does not make its rotation ring") {

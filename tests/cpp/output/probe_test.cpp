@@ -49,7 +49,7 @@ Vec2 cubic(double s) { return {s, 1.0 - 2.0 * s + 3.0 * s * s - 4.0 * s * s * s}
 TEST_CASE("every quantity of the table can be read") {
   for (const Quantity& quantity : quantities()) {
     if (quantity.scope > QuantityScope::Planar || quantity.read_reaction != nullptr) continue;
-    if (quantity.read_actuation != nullptr) continue;
+    if (quantity.read_actuation != nullptr || quantity.kind == QuantityKind::Joint) continue;
     CAPTURE(quantity.name);
     std::string probe = "quantity: " + quantity.name;
     if (quantity.kind != QuantityKind::Energy) probe += ", rod: arm, at: {node: 3}";

@@ -228,12 +228,12 @@ class Network:
 
     def _shoot(self, y: Complex, spans: Array, level: float, square: float = 0.0) -> Complex:
         h = spans / self.steps
-        stages = np.empty((len(_B), *y.shape), dtype=complex)
+        stages = np.empty((*y.shape, len(_B)), dtype=complex)
         for _ in range(self.steps):
             for i in range(len(_B)):
-                here = y + h * np.tensordot(_A[i, :i], stages[:i], 1) if i > 0 else y
-                self._rate(here, level, square, stages[i])
-            y = y + h * np.tensordot(_B, stages, 1)
+                here = y + h * (_A[i, :i] * stages[..., :i]).sum(axis=-1)
+                self._rate(here, level, square, stages[..., i])
+            y = y + h * (_B * stages).sum(axis=-1)
         return y
 
     def _unpack(self, w: Array) -> tuple[Array, Array, Array]:
@@ -325,31 +325,32 @@ class Network:
         j = 2 * len(self.joints) + len(self.rotations)
         return float(np.abs(self._last[:j]).max())
 
-    def state(self, rod: str, at: Any, side: str = "after") -> Array:
-        """(x, y, theta, H, V, M) at a place: force and moment of the part beyond it."""
-        s = self.key({"rod": rod, "at": at})[1] * self.length(rod)
-        tiny = 1e-9 * self.length(rod)
-        inside = [
-            k
-            for k, p in enumerate(self.pieces)
-            if p.rod == rod and p.start - tiny <= s <= p.end + tiny
-        ]
-        k = inside[0] if side == "before" else inside[-1]
-        spans = np.full(len(self.pieces), s - self.pieces[k].start)
-        start = self._starts(self.w)[np.newaxis].astype(complex)
-        found: Array = self._shoot(start, spans, 1.0)[0, :, k].real
-        return found
+    def states(self, rod: str, places: Array, side: str = "after") -> Array:
+        """(x, y, theta, H, V, M) at arc lengths, shape (6, places): (H, V, M) of the part beyond."""
+        own = [k for k, piece in enumerate(self.pieces) if piece.rod == rod]
+        tiny = 1e-9 * self.length(rod) * (1 if side == "after" else -1)
+        ends = np.array([self.pieces[k].end for k in own[:-1]])
+        piece = np.array(own)[np.searchsorted(ends, places + tiny)]
+        spans = places - np.array([self.pieces[k].start for k in piece])
+        start = np.repeat(self._starts(self.w)[np.newaxis].astype(complex), len(places), axis=0)
+        lanes = np.arange(len(places))
+        found: Array = self._shoot(start, spans[:, np.newaxis, np.newaxis], 1.0)[lanes, :, piece].T
+        return found.real
 
-    def read(self, quantity: str, rod: str, at: Any, side: str = "after") -> float:
-        """A quantity as `der` names it."""
-        x, y, theta, H, V, M = self.state(rod, at, side)
+    def along(self, quantity: str, rod: str, places: Array, side: str = "after") -> Array:
+        """A quantity as `der` names it, at arc lengths."""
+        x, y, theta, H, V, M = self.states(rod, np.asarray(places, dtype=float), side)
         section = self.rods[rod]["cross_section"]["stiffness"]
         tension = H * np.cos(theta) + V * np.sin(theta)
         curvature = M / section["EI"] + self.rods[rod].get("natural_curvature", 0.0)
         values = {"x": x, "y": y, "slope": theta, "moment": M, "tension": tension}
         values |= {"strain": tension / section["EA"], "curvature": curvature}
-        values |= {"tx": np.cos(theta), "ty": np.sin(theta)}
-        return float(values[quantity])
+        return values[quantity]
+
+    def read(self, quantity: str, rod: str, at: Any, side: str = "after") -> float:
+        """A quantity at one place."""
+        s = self.key({"rod": rod, "at": at})[1] * self.length(rod)
+        return float(self.along(quantity, rod, np.array([s]), side)[0])
 
     def reaction(self, support: int) -> Array:
         """Force and moment that a support exerts, where it is the only one at its place."""

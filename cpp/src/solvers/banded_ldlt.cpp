@@ -33,6 +33,10 @@ BandedLdlt::Kernels kernels_of(Index half_bandwidth) {
       return kKernels<2>;
     case 5:  // chains in the plane
       return kChainKernels<5>;
+    case 6:  // the same with joints
+      return kChainKernels<6>;
+    case 7:  // and legs of two edges between them
+      return kChainKernels<7>;
     case 8:  // chains in space
       return kChainKernels<8>;
     case 10:  // the same with angles of sections

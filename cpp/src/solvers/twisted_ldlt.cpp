@@ -45,6 +45,10 @@ TwistedLdlt::Kernels TwistedLdlt::kernels_of(Index half_bandwidth) {
   switch (half_bandwidth) {
     case 5:  // chains in the plane
       return kTwoEndedKernels<5>;
+    case 6:  // the same with joints
+      return kTwoEndedKernels<6>;
+    case 7:  // and legs of two edges between them
+      return kTwoEndedKernels<7>;
     case 8:  // chains in space
       return kTwoEndedKernels<8>;
     case 10:  // the same with angles of sections

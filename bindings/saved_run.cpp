@@ -109,8 +109,8 @@ void save(const std::filesystem::path& folder, const Scenario& scenario, const M
   if (num_saved_turns(model) > 0) {
     const py::object turns = result.attr("turns");
     if (turns.is_none()) throw py::value_error("the run needs the turns of its edges");
-    run.frames.turns =
-        numbers(turns.cast<Numbers>(), {times.size(), py::ssize_t{num_saved_turns(model)}}, "turns");
+    run.frames.turns = numbers(turns.cast<Numbers>(),
+                               {times.size(), py::ssize_t{num_saved_turns(model)}}, "turns");
   }
   run.frames.energies = table(result.attr("energies"), names_in_group("energies"), frames);
   run.frames.work = table(result.attr("work"), names_in_group("work"), frames);

@@ -63,8 +63,7 @@ Array section_view(const py::object& self) {
   Simulation& engine = self.cast<PySimulation&>().engine();
   const Model& model = engine.model();
   const Index first = model.dofs.num_positions();
-  return Array(py::ssize_t{model.dofs.num_angles()}, (engine.state().*member).data() + first,
-               self);
+  return Array(py::ssize_t{model.dofs.num_angles()}, (engine.state().*member).data() + first, self);
 }
 
 template <Vec3 Momenta::* part>

@@ -119,7 +119,8 @@ class Weights {
       if (leg.in_end_cell(place)) continue;
       double turn = rod_.voronoi_length(place) * at(place);
       // A free end is on the curve, the node next to it beside it.
-      if (place == leg.first + 1) turn += rod_.edge_length[to_size(leg.first)] / 12.0 * at(leg.first);
+      if (place == leg.first + 1)
+        turn += rod_.edge_length[to_size(leg.first)] / 12.0 * at(leg.first);
       if (place == leg.last - 1) turn += rod_.edge_length[to_size(place)] / 12.0 * at(leg.last);
       add(rod_.natural_strain_entries.cell(place, false), turn, stretch_.controls[0]);
     }

@@ -39,9 +39,7 @@ class LegBuilder {
  private:
   [[nodiscard]] bool has_natural() const { return !rod_.natural_curvature.empty(); }
   /// Natural curvature at a node [1/m].
-  [[nodiscard]] double natural(Index place) const {
-    return rod_.natural_curvature[to_size(place)];
-  }
+  [[nodiscard]] double natural(Index place) const { return rod_.natural_curvature[to_size(place)]; }
   [[nodiscard]] double length(Index edge) const { return rod_.edge_length[to_size(edge)]; }
   [[nodiscard]] Vec2 edge(Index number) const { return reference_edge(rod_, number, model_); }
 
@@ -117,12 +115,14 @@ void add_leg_elements(RodMesh& rod, Model& model) {
   rod.rest_turning_angle.assign(rod.nodes.size(), 0.0);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     elements_of<Stretch<2>>(*model.elements)
-        .add(rod.edge_dofs(edge, model), {rod.EA, rod.edge_length[to_size(edge)], rod.natural_strain_entries.edge(edge)});
+        .add(rod.edge_dofs(edge, model),
+             {rod.EA, rod.edge_length[to_size(edge)], rod.natural_strain_entries.edge(edge)});
   }
   for (Index place = 1; place < rod.num_edges(); ++place) {
     rod.rest_turning_angle[to_size(place)] =
         rod.natural_curvature.empty()
-            ? angle_between(reference_edge(rod, place - 1, model), reference_edge(rod, place, model))
+            ? angle_between(reference_edge(rod, place - 1, model),
+                            reference_edge(rod, place, model))
             : rod.natural_curvature[to_size(place)] * rod.voronoi_length(place);
   }
   if (rod.EI == 0.0) return;

@@ -116,9 +116,8 @@ Vec3 taken_by(const SpatialMoment::TurnedEdge& edge, const Vec3& moment, double 
 template <class Kind, class... Forces>
 constexpr bool kIsOneOf = (std::is_same_v<Kind, Forces> || ...);
 template <class Kind>
-constexpr bool kIsForce =
-    kIsOneOf<Kind, PlanarFollowerForce, JointFollowerForce, FollowerForce, HeldForce<1>,
-             HeldForce<2>>;
+constexpr bool kIsForce = kIsOneOf<Kind, PlanarFollowerForce, JointFollowerForce, FollowerForce,
+                                   HeldForce<1>, HeldForce<2>>;
 
 /// The value that `f` has for a moment; a default for a force.
 template <class Result, class Kinds, class F>

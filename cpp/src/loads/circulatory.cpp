@@ -308,7 +308,8 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
   add_point(s, rod, model, load);
   if (!rod.legs.empty()) {
     const Index number = rod.rotation_at(nearest_node(rod.arc_length, s));
-    if (number < 0) throw Error("model_error", "rod '" + rod.name + "' turns no force: its EI is 0");
+    if (number < 0)
+      throw Error("model_error", "rod '" + rod.name + "' turns no force: its EI is 0");
     const Index rotation = model.dofs.rotation(number);
     load.coordinates.push_back({{rotation, 1.0}});
     load.kind = JointFollowerForce{rotation};

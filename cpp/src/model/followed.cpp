@@ -18,9 +18,7 @@ Vec2 turned_by(const FollowedEdge& edge, double turn) {
 
 Index num_turns(const Model& model) { return static_cast<Index>(model.followed_edges.size()); }
 
-Index num_saved_turns(const Model& model) {
-  return num_turns(model) + model.dofs.num_rotations();
-}
+Index num_saved_turns(const Model& model) { return num_turns(model) + model.dofs.num_rotations(); }
 
 Index num_followed(const Model& model) {
   return num_turns(model) + static_cast<Index>(model.initial_frames.size());

@@ -51,8 +51,7 @@ class LegReader {
       end.natural = 0.0;
       for (Index k = 0; k <= std::min<Index>(leg.num_cells(), 2); ++k) {
         const Index place = from_start ? leg.first + k : leg.last - k;
-        end.natural +=
-            (from_start ? 1.0 : -1.0) * C(0, k) * rod.natural_curvature[to_size(place)];
+        end.natural += (from_start ? 1.0 : -1.0) * C(0, k) * rod.natural_curvature[to_size(place)];
       }
     }
   }
@@ -62,8 +61,7 @@ class LegReader {
     return moments_[to_size(node)](model, state);
   }
   /// [1/m] With what actuations add.
-  [[nodiscard]] double natural_curvature(Index node, const Model& model,
-                                         const State& state) const {
+  [[nodiscard]] double natural_curvature(Index node, const Model& model, const State& state) const {
     return natural_[to_size(node)] + actuated(node, model, state);
   }
   [[nodiscard]] double curvature(Index node, const Model& model, const State& state) const {
@@ -83,9 +81,9 @@ class LegReader {
       edge = edge_beside(slope_of(leg_.end, model, state), last - 1, model, state);
       for (Index k = last - 1; k >= std::max<Index>(node, 1); --k) edge -= turn(k, model, state);
     } else {
-      edge = edge_beside(leg_.start.rotation >= 0 ? slope_of(leg_.start, model, state)
-                                                  : leg_.start.direction,
-                         0, model, state);
+      edge = edge_beside(
+          leg_.start.rotation >= 0 ? slope_of(leg_.start, model, state) : leg_.start.direction, 0,
+          model, state);
       for (Index k = 1; k < node; ++k) edge += turn(k, model, state);
     }
     if (node == 0) return edge - lean(start_, 1, model, state);
@@ -108,7 +106,8 @@ class LegReader {
                                : node == before + 1 ? 0.5 * a
                                                     : 0.5 * a + b;
     const double share = from_middle / (0.5 * (a + b));
-    return (1.0 - share) * edge_force(before, model, state) + share * edge_force(before + 1, model, state);
+    return (1.0 - share) * edge_force(before, model, state) +
+           share * edge_force(before + 1, model, state);
   }
   /// Its component along the tangent [N].
   [[nodiscard]] double tension(Index node, const Model& model, const State& state) const {
@@ -119,8 +118,8 @@ class LegReader {
  private:
   /// How the outermost edge leans against the tangent at an end without a joint.
   struct End {
-    double per_moment = 0.0;  ///< of the node next to it [rad/(N m)]
-    double natural = 0.0;     ///< without stress [rad]
+    double per_moment = 0.0;      ///< of the node next to it [rad/(N m)]
+    double natural = 0.0;         ///< without stress [rad]
     Vec3 lengths = Vec3::Zero();  ///< by the curvature at the nodes from the end on [m]
   };
 
@@ -261,7 +260,7 @@ class LegReader {
   Leg leg_;
   RodMesh rod_;
   ActuatedShape actuated_;
-  std::vector<MomentReader> moments_;  // of each node
+  std::vector<MomentReader> moments_;      // of each node
   std::vector<ActuatedRest> elongations_;  // [m] of each edge
   std::vector<double> drawn_;              // curvature of each node [1/m]
   std::vector<double> natural_;            // likewise, without stress

@@ -59,9 +59,10 @@ class JointCheck {
     const Member found{*rod, nodes->front()};
     const auto known = joint_at_.find(CheckContext::node_key(found.rod, found.node));
     if (known != joint_at_.end()) {
-      report(path, fmt::format("this place of rod '{}' is in joint '{}' already: name all rods that "
-                               "meet at a point in one joint",
-                               member.rod, joint_of(known->second).name));
+      report(path,
+             fmt::format("this place of rod '{}' is in joint '{}' already: name all rods that "
+                         "meet at a point in one joint",
+                         member.rod, joint_of(known->second).name));
       return std::nullopt;
     }
     joint_at_.emplace(CheckContext::node_key(found.rod, found.node), number);
@@ -112,8 +113,9 @@ class JointCheck {
   }
   Components velocity_of(const Member& member) {
     const Rod& rod = context_.scene.rods[static_cast<std::size_t>(member.rod)];
-    return rod.initial_velocity.empty() ? Components(point_of(member).size(), 0.0)
-                                        : rod.initial_velocity[static_cast<std::size_t>(member.node)];
+    return rod.initial_velocity.empty()
+               ? Components(point_of(member).size(), 0.0)
+               : rod.initial_velocity[static_cast<std::size_t>(member.node)];
   }
   double length_of(const Member& member) {
     return context_.lines[static_cast<std::size_t>(member.rod)]->length();
@@ -134,8 +136,9 @@ class JointedSceneCheck {
   void run() {
     const SceneText& scene = context_.scene;
     if (context_.diagnostics.dimension() == 3) {
-      report({"joints"}, "joints are in scenes of two components: write the points and vectors of "
-                         "the scene with x and y alone");
+      report({"joints"},
+             "joints are in scenes of two components: write the points and vectors of "
+             "the scene with x and y alone");
     }
     if (scene.model == ModelChoice::Spatial || scene.model == ModelChoice::SpatialBend) {
       lacks({"model"}, "a model in space");
@@ -181,10 +184,11 @@ class JointedSceneCheck {
     const auto rod = context_.rods.find(name);
     if (rod == context_.rods.end()) return;
     if (!does_not_bend(context_.scene.rods[static_cast<std::size_t>(rod->second)])) return;
-    report(Path{"loads", load, key},
-           fmt::format("rod '{}' has no stiffness against bending, EI: it neither bears a moment nor "
-                       "turns a force",
-                       name));
+    report(
+        Path{"loads", load, key},
+        fmt::format("rod '{}' has no stiffness against bending, EI: it neither bears a moment nor "
+                    "turns a force",
+                    name));
   }
   /// On a rod drawn by points all that acts at a point, and each border of an actuation, is at one.
   void need_point(const std::string& name, Location& at, const Path& path) {

@@ -233,9 +233,8 @@ class ProbeCheck {
     } else if (!probe_.leg) {
       report(path_, fmt::format("'{}' is what one rod exerts on the joint: give 'leg', its name",
                                 probe_.quantity));
-    } else if (std::none_of(joint->of.begin(), joint->of.end(), [&](const JointMember& member) {
-                 return member.rod == *probe_.leg;
-               })) {
+    } else if (std::none_of(joint->of.begin(), joint->of.end(),
+                            [&](const JointMember& member) { return member.rod == *probe_.leg; })) {
       report(path_ / "leg", fmt::format("rod '{}' is not in joint '{}'", *probe_.leg, joint->name));
     }
   }

@@ -69,7 +69,7 @@ std::string in_words(const CheckContext& context, const Node& node) {
 /// As it is written in a joint.
 std::string as_member(const CheckContext& context, const Node& node) {
   const std::string& rod = context.scene.rods[static_cast<std::size_t>(node.rod)].name;
-  const std::string at = !node.is_end      ? fmt::format("{{node: {}}}", node.number)
+  const std::string at = !node.is_end       ? fmt::format("{{node: {}}}", node.number)
                          : node.number == 0 ? "start"
                                             : "end";
   return fmt::format("{{rod: {}, at: {}}}", rod, at);

@@ -48,8 +48,8 @@ void for_each_place(SceneText& scene, const Enter& enter) {
 
 /// Nodes move: the place of one is that of an even rod.
 void name_by_arc_length(const RestLine& line, Location& at) {
-  const bool is_node = at.kind == Location::Kind::Node && at.node < line.num_nodes() &&
-                       at.node >= -line.num_nodes();
+  const bool is_node =
+      at.kind == Location::Kind::Node && at.node < line.num_nodes() && at.node >= -line.num_nodes();
   if (!is_node && at.kind != Location::Kind::Middle) return;
   at.arc_length = line.arc_length_of(at);
   at.kind = Location::Kind::ArcLength;
@@ -287,7 +287,8 @@ void place_leg_ends(CheckContext& context) {
   std::vector<Places> places(scene.rods.size());
   for_each_place(scene, [&](const std::string& name, Location& at, Role role) {
     const auto rod = context.rods.find(name);
-    if (rod != context.rods.end()) places[static_cast<std::size_t>(rod->second)].push_back({&at, role});
+    if (rod != context.rods.end())
+      places[static_cast<std::size_t>(rod->second)].push_back({&at, role});
   });
   // Where an actuated curvature begins or ends it jumps.
   std::vector<std::pair<double*, Location>> borders;

@@ -51,7 +51,8 @@ std::string Simulation::advice_on_steps() const {
           plan_.step / static_cast<double>(std::max<std::int64_t>(2, counters_.most_pieces)));
       break;
   }
-  constexpr const char* kConserving = "energy_momentum";  // planar, without joints (check_spatial.cpp)
+  constexpr const char* kConserving =
+      "energy_momentum";  // planar, without joints (check_spatial.cpp)
   if (stepper_info_.name == kConserving || model().dimension != 2 || model().has_rotations()) {
     return shorter;
   }

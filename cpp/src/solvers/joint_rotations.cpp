@@ -73,8 +73,8 @@ void JointRotations::assemble() {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     constexpr Index kFirst = Kernel::kDofs - Kernel::kJoints;
     LocalTerm<Kernel::kDofs> term;
-    evaluate_element<Kernel, Derivatives::Hessian>(
-        list.constants[e], here_, gather(list.dofs[e], here_.coordinates), term);
+    evaluate_element<Kernel, Derivatives::Hessian>(list.constants[e], here_,
+                                                   gather(list.dofs[e], here_.coordinates), term);
     for (Index i = 0; i < Kernel::kJoints; ++i) {
       const Index number = rotations[to_size(i)];
       if (number < 0) continue;
@@ -101,7 +101,8 @@ void JointRotations::solve() {
       double moment = residual_[k];
       for (const std::size_t number : beside_[i]) {
         const Coupling& coupling = couplings_[number];
-        moment -= coupling.value * step_[static_cast<Index>(coupling.a == i ? coupling.b : coupling.a)];
+        moment -=
+            coupling.value * step_[static_cast<Index>(coupling.a == i ? coupling.b : coupling.a)];
       }
       const double before = step_[k];
       step_[k] = moment / stiffness_[k];

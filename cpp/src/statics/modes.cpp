@@ -104,8 +104,8 @@ Eigen::MatrixXd dense_vectors(const ShiftInvert& inverse, const MassProduct& mas
   const Eigen::MatrixXd answers = dense(inverse);
   const Eigen::LLT<Eigen::MatrixXd> factor(all(with_mass, with_mass));
   const Eigen::MatrixXd L = factor.matrixL();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      L.transpose() * answers(with_mass, with_mass) * L);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(L.transpose() *
+                                                              answers(with_mass, with_mass) * L);
   const Eigen::MatrixXd scaled = solver.eigenvectors().rowwise().reverse().leftCols(count);
   const Eigen::MatrixXd shapes = factor.matrixU().solve(scaled);
   return answers * (all(Eigen::all, with_mass) * shapes);

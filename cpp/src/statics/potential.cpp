@@ -52,8 +52,8 @@ template <class Kernel>
 struct NumPositions<Kernel, std::enable_if_t<(NumJoints<Kernel>::value > 0)>>
     : std::integral_constant<int, Kernel::kDofs - Kernel::kJoints> {};
 template <class Kernel>
-struct NumPositions<Kernel, std::enable_if_t<(NumJoints<Kernel>::value == 0 &&
-                                              Kernel::kDofs > 3 * Kernel::kNodes)>>
+struct NumPositions<
+    Kernel, std::enable_if_t<(NumJoints<Kernel>::value == 0 && Kernel::kDofs > 3 * Kernel::kNodes)>>
     : std::integral_constant<int, 3 * Kernel::kNodes> {};
 
 /// The Hessian of an element of any kind. Its size is no part of the type, so that the functions

@@ -132,8 +132,8 @@ class RigidMotions {
     }
   }
 
-  /// Joints turn with their rods. A section that turns with its rod turns about its tangent by the rotation's component along
-  /// it: its reference frame, transported in parallel, does not.
+  /// Joints turn with their rods. A section that turns with its rod turns about its tangent by the
+  /// rotation's component along it: its reference frame, transported in parallel, does not.
   void turn_sections(const Configuration& here) {
     if constexpr (Dimension == 2) {
       for (Index i = 0; i < model_.dofs.num_rotations(); ++i) {

@@ -122,15 +122,14 @@ TEST_CASE("rotations follow from the places of the nodes") {
 
 TEST_CASE("what a joint tells is what its rods were loaded with") {
   // Only the moment acts: the rod before the joint bears it as it is, the rod behind it nothing.
-  Simulation simulation(Scenario::parse(
-      beam_of_two(6).to_yaml() +
-      "output:\n  probes:\n"
-      "    rotation: {joint: j, quantity: rotation}\n"
-      "    moment_a: {joint: j, leg: a, quantity: moment_z}\n"
-      "    moment_b: {joint: j, leg: b, quantity: moment_z}\n"
-      "    force_x: {joint: j, leg: a, quantity: force_x}\n"
-      "    force_y: {joint: j, leg: b, quantity: force_y}\n"
-      "    slope: {rod: b, at: end, quantity: slope}\n"));
+  Simulation simulation(Scenario::parse(beam_of_two(6).to_yaml() +
+                                        "output:\n  probes:\n"
+                                        "    rotation: {joint: j, quantity: rotation}\n"
+                                        "    moment_a: {joint: j, leg: a, quantity: moment_z}\n"
+                                        "    moment_b: {joint: j, leg: b, quantity: moment_z}\n"
+                                        "    force_x: {joint: j, leg: a, quantity: force_x}\n"
+                                        "    force_y: {joint: j, leg: b, quantity: force_y}\n"
+                                        "    slope: {rod: b, at: end, quantity: slope}\n"));
   simulation.settle(true);
   const double expected[] = {0.1 * 0.37 / 2.0, -0.1, 0.0, 0.0, 0.0, 0.1 * 0.37 / 2.0};
   const auto probes = make_probes(simulation.scenario().scene(), simulation.model());

@@ -128,8 +128,8 @@ struct CirculatoryLoad {
     double weight = 1.0;
   };
 
-  std::variant<PlanarFollowerForce, JointFollowerForce, FollowerForce, HeldForce<1>, HeldForce<2>, SpatialMoment,
-               HeldMoment<1>, HeldMoment<2>>
+  std::variant<PlanarFollowerForce, JointFollowerForce, FollowerForce, HeldForce<1>, HeldForce<2>,
+               SpatialMoment, HeldMoment<1>, HeldMoment<2>>
       kind;
   LoadAmount amount;
   std::vector<std::vector<Term>> coordinates;  ///< the rows of B'

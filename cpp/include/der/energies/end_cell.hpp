@@ -73,8 +73,8 @@ struct EndCell {
     // By each direction: what turns it away from the one before turns it towards the next.
     Eigen::Matrix<double, kDirections, 1> by_direction;
     for (int i = 0; i < kDirections; ++i) {
-      by_direction[i] = (i > 0 ? response.moment[i - 1] : 0.0) -
-                        (i < kAngles ? response.moment[i] : 0.0);
+      by_direction[i] =
+          (i > 0 ? response.moment[i - 1] : 0.0) - (i < kAngles ? response.moment[i] : 0.0);
     }
     // Derivatives of all directions by the coordinates, a column for each.
     Eigen::Matrix<double, kDofs, kDirections> slopes;
@@ -131,8 +131,8 @@ struct EndCell {
       Angles first;
       Angles second;
       for (int i = 0; i < kAngles; ++i) {
-        const CurvatureValue k = Curvature::of(
-            angle_between(vectors[std::size_t(i)], vectors[std::size_t(i) + 1]));
+        const CurvatureValue k =
+            Curvature::of(angle_between(vectors[std::size_t(i)], vectors[std::size_t(i) + 1]));
         excess[i] = k.kappa - natural[i];
         first[i] = k.first;
         second[i] = k.second;

@@ -27,63 +27,60 @@ namespace der {
 /// the energy report and the finite-difference tests loop over this list. A kind without elements
 /// costs nothing in a run.
 struct ElementLists {
-  using Lists = std::tuple<ElementList<Stretch<2>>,                                          //
-                           ElementList<FromPivot<Stretch<2>>>,                               //
-                           ElementList<PlanarBend<AngleCurvature>>,                          //
-                           ElementList<PlanarBend<TangentCurvature>>,                        //
-                           ElementList<FromPivot<PlanarBend<AngleCurvature>>>,               //
-                           ElementList<FromPivot<PlanarBend<TangentCurvature>>>,             //
-                           ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,              //
-                           ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,            //
-                           ElementList<EndCell<AngleCurvature, 1, 1>>,
-                           ElementList<EndCell<TangentCurvature, 1, 1>>,
-                           ElementList<EndCell<AngleCurvature, 2, 1>>,
-                           ElementList<EndCell<TangentCurvature, 2, 1>>,
-                           ElementList<EndCell<AngleCurvature, 1, 2>>,
-                           ElementList<EndCell<TangentCurvature, 1, 2>>,
-                           ElementList<EndCell<AngleCurvature, 2, 2>>,
-                           ElementList<EndCell<TangentCurvature, 2, 2>>,
-                           ElementList<JointSpring>,
-                           ElementList<Stretch<3>>,                                          //
-                           ElementList<FromSpatialPivot<Stretch<3>>>,                        //
-                           ElementList<IsotropicBend<AngleCurvature>>,                       //
-                           ElementList<IsotropicBend<TangentCurvature>>,                     //
-                           ElementList<FromSpatialPivot<IsotropicBend<AngleCurvature>>>,     //
-                           ElementList<FromSpatialPivot<IsotropicBend<TangentCurvature>>>,   //
-                           ElementList<FromSpatialPivot<IsotropicClamp<AngleCurvature>>>,    //
-                           ElementList<FromSpatialPivot<IsotropicClamp<TangentCurvature>>>,  //
-                           ElementList<SpatialBend<AngleCurvature>>,                         //
-                           ElementList<SpatialBend<TangentCurvature>>,                       //
-                           ElementList<FromSpatialPivot<SpatialBend<AngleCurvature>>>,       //
-                           ElementList<FromSpatialPivot<SpatialBend<TangentCurvature>>>,     //
-                           ElementList<CornerBend>,                                          //
-                           ElementList<FromSpatialPivot<CornerBend>>,                        //
-                           ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
-                           ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
-                           ElementList<FromSpatialPivot<Fork>>,                              //
-                           ElementList<FromSpatialPivot<CornerFork>>,                        //
-                           ElementList<PlanarMoment>,                                        //
-                           ElementList<FromPivot<PlanarMoment>>,                             //
-                           ElementList<Foundation<2>>,                                       //
-                           ElementList<Foundation<3>>,                                       //
-                           ElementList<PointSpring<2, 1>>,                                   //
-                           ElementList<PointSpring<2, 2>>,                                   //
-                           ElementList<PointSpring<2, 3>>,                                   //
-                           ElementList<PointSpring<2, 4>>,                                   //
-                           ElementList<PointSpring<2, 5>>,                                   //
-                           ElementList<PointSpring<2, 6>>,                                   //
-                           ElementList<PointSpring<3, 1>>,                                   //
-                           ElementList<PointSpring<3, 2>>,                                   //
-                           ElementList<PointSpring<3, 3>>,                                   //
-                           ElementList<PointSpring<3, 4>>,                                   //
-                           ElementList<PointSpring<3, 5>>,                                   //
-                           ElementList<PointSpring<3, 6>>,                                   //
-                           ElementList<RotationalSpring<1>>,                                 //
-                           ElementList<RotationalSpring<2>>,                                 //
-                           ElementList<FromPivot<RotationalSpring<1>>>,                      //
-                           ElementList<FromPivot<RotationalSpring<2>>>,                      //
-                           ElementList<SectionSpring<1>>,                                    //
-                           ElementList<SectionSpring<2>>>;
+  using Lists = std::tuple<
+      ElementList<Stretch<2>>,                                //
+      ElementList<FromPivot<Stretch<2>>>,                     //
+      ElementList<PlanarBend<AngleCurvature>>,                //
+      ElementList<PlanarBend<TangentCurvature>>,              //
+      ElementList<FromPivot<PlanarBend<AngleCurvature>>>,     //
+      ElementList<FromPivot<PlanarBend<TangentCurvature>>>,   //
+      ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,    //
+      ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,  //
+      ElementList<EndCell<AngleCurvature, 1, 1>>, ElementList<EndCell<TangentCurvature, 1, 1>>,
+      ElementList<EndCell<AngleCurvature, 2, 1>>, ElementList<EndCell<TangentCurvature, 2, 1>>,
+      ElementList<EndCell<AngleCurvature, 1, 2>>, ElementList<EndCell<TangentCurvature, 1, 2>>,
+      ElementList<EndCell<AngleCurvature, 2, 2>>, ElementList<EndCell<TangentCurvature, 2, 2>>,
+      ElementList<JointSpring>,
+      ElementList<Stretch<3>>,                                          //
+      ElementList<FromSpatialPivot<Stretch<3>>>,                        //
+      ElementList<IsotropicBend<AngleCurvature>>,                       //
+      ElementList<IsotropicBend<TangentCurvature>>,                     //
+      ElementList<FromSpatialPivot<IsotropicBend<AngleCurvature>>>,     //
+      ElementList<FromSpatialPivot<IsotropicBend<TangentCurvature>>>,   //
+      ElementList<FromSpatialPivot<IsotropicClamp<AngleCurvature>>>,    //
+      ElementList<FromSpatialPivot<IsotropicClamp<TangentCurvature>>>,  //
+      ElementList<SpatialBend<AngleCurvature>>,                         //
+      ElementList<SpatialBend<TangentCurvature>>,                       //
+      ElementList<FromSpatialPivot<SpatialBend<AngleCurvature>>>,       //
+      ElementList<FromSpatialPivot<SpatialBend<TangentCurvature>>>,     //
+      ElementList<CornerBend>,                                          //
+      ElementList<FromSpatialPivot<CornerBend>>,                        //
+      ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
+      ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
+      ElementList<FromSpatialPivot<Fork>>,                              //
+      ElementList<FromSpatialPivot<CornerFork>>,                        //
+      ElementList<PlanarMoment>,                                        //
+      ElementList<FromPivot<PlanarMoment>>,                             //
+      ElementList<Foundation<2>>,                                       //
+      ElementList<Foundation<3>>,                                       //
+      ElementList<PointSpring<2, 1>>,                                   //
+      ElementList<PointSpring<2, 2>>,                                   //
+      ElementList<PointSpring<2, 3>>,                                   //
+      ElementList<PointSpring<2, 4>>,                                   //
+      ElementList<PointSpring<2, 5>>,                                   //
+      ElementList<PointSpring<2, 6>>,                                   //
+      ElementList<PointSpring<3, 1>>,                                   //
+      ElementList<PointSpring<3, 2>>,                                   //
+      ElementList<PointSpring<3, 3>>,                                   //
+      ElementList<PointSpring<3, 4>>,                                   //
+      ElementList<PointSpring<3, 5>>,                                   //
+      ElementList<PointSpring<3, 6>>,                                   //
+      ElementList<RotationalSpring<1>>,                                 //
+      ElementList<RotationalSpring<2>>,                                 //
+      ElementList<FromPivot<RotationalSpring<1>>>,                      //
+      ElementList<FromPivot<RotationalSpring<2>>>,                      //
+      ElementList<SectionSpring<1>>,                                    //
+      ElementList<SectionSpring<2>>>;
   Lists lists;
   std::vector<CirculatoryLoad> circulatory;  ///< loads without an energy
 };

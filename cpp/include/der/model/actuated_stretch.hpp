@@ -49,7 +49,8 @@ struct NaturalStrainEntries {
   }
   /// Entries of an end cell of a leg, by the leg's number in the rod: one for each of its angles.
   [[nodiscard]] NaturalStrainOffset end_cell(std::size_t leg, bool at_start) const {
-    return {legs < 0 ? -1 : legs + kMostAngles * (2 * static_cast<Index>(leg) + (at_start ? 0 : 1))};
+    return {legs < 0 ? -1
+                     : legs + kMostAngles * (2 * static_cast<Index>(leg) + (at_start ? 0 : 1))};
   }
   static constexpr Index kMostAngles = 3;
   /// Entry of a place with springs against turning, by its number among them.

@@ -35,9 +35,9 @@ struct Leg {
 
 /// The turning angles next to an end of a leg, times EI, that a moment makes which is linear along
 /// the leg: C m, from the end on. m are the moments at the end, at the node next to it, and on a
-/// leg of two cells at its other end; on one of one cell, those at its two ends. Ends of legs are on
-/// the curve. Other nodes are beside it, by l^2/12 of the curvature, l the length of their cells.
-/// `edge_length`: of the rod's edges [m].
+/// leg of two cells at its other end; on one of one cell, those at its two ends. Ends of legs are
+/// on the curve. Other nodes are beside it, by l^2/12 of the curvature, l the length of their
+/// cells. `edge_length`: of the rod's edges [m].
 Mat3 end_compliance(const Leg& leg, bool from_start, const std::vector<double>& edge_length);
 
 }  // namespace der

@@ -21,9 +21,9 @@ struct Frame {
   Eigen::Ref<const Vector> spin;            ///< its rate [rad/s]
   Eigen::Ref<const Vector> section_frames;  ///< blocks of the edges (kinematics/frame_block.hpp)
   Eigen::Ref<const Vector> turns;  ///< of followed edges or joints, whole turns included [rad]
-  Energies energies;                        ///< [J]
-  const Work& work;                         ///< [J] since the start
-  const Vector& probes;                     ///< one value a probe, in the order of the scene
+  Energies energies;               ///< [J]
+  const Work& work;                ///< [J] since the start
+  const Vector& probes;            ///< one value a probe, in the order of the scene
 };
 
 /// Takes the saved instants of a run, one after the other: into memory, into a file, ...

@@ -44,7 +44,7 @@ struct AxisRotation {
 };
 
 struct Support {
-  std::string name;  ///< by which programs set it and overrides find it; empty: none
+  std::string name;   ///< by which programs set it and overrides find it; empty: none
   std::string joint;  ///< in place of the rod and the place, which the checks then set
   std::string rod;
   Location at;

@@ -8,9 +8,9 @@
 
 namespace der {
 
-/// The rotations of joints have no inertia: where the nodes are, and the moments that act, determine
-/// them. Schemes that integrate over time would let them ring; each step and each start of a run
-/// settles them. Allocates nothing once it is made.
+/// The rotations of joints have no inertia: where the nodes are, and the moments that act,
+/// determine them. Schemes that integrate over time would let them ring; each step and each start
+/// of a run settles them. Allocates nothing once it is made.
 class JointRotations {
  public:
   explicit JointRotations(const Model& model);

@@ -242,7 +242,7 @@ def _joined(kind: str) -> Thing:
         rod = _base(model)["rods"][0]
         at = np.array(rod["points"][4])
         stiffness = {"EA": 400.0, "EI": 0.3, "mass_per_length": 0.2}
-        knee = (at + [0.3, -0.4]).round(12).tolist()
+        knee = (at + np.array([0.3, -0.4])).round(12).tolist()
 
         def straight(name: str, start: list[float], end: list[float]) -> Scene:
             section = {"stiffness": dict(stiffness)}

@@ -71,7 +71,7 @@ def straight_in_space(n, **more):
 
 ALONG = {"position", "tangent", "bend", "edge", "section", "natural"}
 #: Energies need no larger model.
-KINDS = ALONG | {"velocity", "support", "actuation", "ring", "joint", "energy"}
+KINDS = ALONG | {"velocity", "support", "actuation", "ring", "energy"}
 
 
 def spatial_quantities(kinds):

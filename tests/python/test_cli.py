@@ -39,6 +39,24 @@ def test_help_lists_every_command(capsys):
     assert {line.split()[0] for line in listed.splitlines() if line.startswith("    ")} >= names
 
 
+def test_without_a_command_it_prints_the_help(capsys):
+    assert main([]) == 0
+    assert capsys.readouterr().out.startswith("usage: der")
+
+
+@pytest.mark.parametrize("arguments", [["view"], ["animate"], ["plot", "--what", "shapes"]])
+def test_a_sweep_is_told_from_a_run(tube, tmp_path, capsys, arguments):
+    der.sweep(tube, {"rods.beam.nodes": [5, 6]}, out=tmp_path / "sweep", frames=True)
+    assert main([arguments[0], str(tmp_path / "sweep"), *arguments[1:]]) == 1
+    error = capsys.readouterr().err
+    assert "a sweep" in error
+    if arguments[0] != "plot":
+        assert f"`der plot {tmp_path / 'sweep'}` draws it" in error
+        kept = tmp_path / "sweep" / "runs"
+        assert error.endswith(f"its members are runs, in {kept}\n")
+        assert der.open_run(kept / "0000" / "0000001").positions.shape[1] == 6
+
+
 def test_version(capsys):
     with pytest.raises(SystemExit) as caught:
         main(["--version"])

@@ -13,7 +13,7 @@ from der._core import EquilibriumReport, State
 from der.errors import DerError, UnreliableResultWarning, warn
 from der.key_paths import check_apart, check_varied
 from der.named_probes import NamedProbes
-from der.simulation import SceneLike, as_scenario
+from der.scenario import SceneLike, load
 from der.value_lists import check_value_list
 from der.whole_numbers import MOST, whole_number
 
@@ -108,7 +108,7 @@ class Batch(_core.Batch):
         *,
         vary: Mapping[str, ArrayLike | Sequence[Any]] | None = None,
     ) -> None:
-        scenario = as_scenario(scene)
+        scenario = load(scene)
         members = whole_number("members", members, 1, MOST)
         if threads is not None:
             threads = whole_number("threads", threads, 1, MOST_THREADS)

@@ -76,6 +76,19 @@ def test_run_is_the_program(scene, tmp_path):
     assert command("run", "no_such.yaml").returncode == 4
 
 
+def test_examples_are_listed_and_run_by_name(tmp_path, capsys):
+    assert main(["examples"]) == 0
+    listed = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in listed] == [f"example:{name}" for name in der.examples()]
+    assert "A soft finger closes and opens" in "".join(listed)
+    done = command("run", "--quiet", "example:cantilever", "--out", tmp_path / "run")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert der.open_run(tmp_path / "run").scenario.title == der.examples()["cantilever"]
+    assert main(["check", "example:cantilever"]) == 0
+    assert main(["check", "example:cantiliver"]) == 1
+    assert "error: there is no example 'cantiliver'; there are " in capsys.readouterr().err
+
+
 def test_run_with_no_program_to_be_found(monkeypatch, capsys):
     monkeypatch.setattr("sysconfig.get_path", lambda _: "/nowhere")
     monkeypatch.setattr("shutil.which", lambda _: None)

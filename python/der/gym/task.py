@@ -11,7 +11,7 @@ from gymnasium import Space
 from gymnasium.spaces import Box
 
 from der.gym.episodes import Episodes
-from der.simulation import SceneLike
+from der.scenario import SceneLike
 from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:

@@ -11,6 +11,7 @@ import numpy as np
 from der import _core
 from der._core import EquilibriumReport, State
 from der.errors import DerError, UnreliableResultWarning, warn
+from der.html import card
 from der.key_paths import check_apart, check_varied
 from der.named_probes import NamedProbes
 from der.scenario import SceneLike, load
@@ -18,6 +19,7 @@ from der.value_lists import check_value_list
 from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 #: Numbers of members, a mask of all, the number of one, or None for all.
@@ -26,6 +28,8 @@ Members: TypeAlias = "Iterable[int] | NDArray[np.bool_] | int | None"
 
 #: More threads than any machine runs at once are a slip.
 MOST_THREADS = 4096
+#: Members that are drawn unless they are named.
+_DRAWN = 8
 
 
 @dataclass(frozen=True)
@@ -275,6 +279,54 @@ class Batch(_core.Batch):
     def failures(self) -> list[MemberFailure]:
         """Why members have failed, in the order of their numbers."""
         return [MemberFailure(*row) for row in self.failure_rows()]
+
+    def plot(self, members: Members = None) -> Figure:
+        """Draw the present shapes of members.
+
+        Parameters
+        ----------
+        members
+            Numbers of members, a mask of shape (members,), or one number; without it, up to eight
+            that are evenly chosen.
+
+        Raises
+        ------
+        IndexError
+            If there is no such member.
+        ValueError
+            If none is named.
+        """
+        from der.plotting import plot_states  # here, because matplotlib takes long to load
+
+        count = len(self)
+        if members is None:
+            members = np.unique(np.linspace(0, count - 1, _DRAWN).astype(int))
+        numbers = self._numbers(members)
+        if not numbers:
+            raise ValueError("no member to draw is named: name one, or leave members out")
+        labels = [f"member {n}{' (failed)' if self.failed[n] else ''}" for n in numbers]
+        first = self.scenario(numbers[0])
+        title = f"{first.title}: {len(numbers)} of {count} members"
+        now = float(self.time[numbers[-1]])
+        return plot_states(first, self.positions[numbers], labels, time=now, title=title)
+
+    def __repr__(self) -> str:
+        """Return title, time and size in one line."""
+        return f"<der.Batch of {self.scenario(0).title!r}: {self._facts()}>"
+
+    def _repr_html_(self) -> str:
+        shown = self.failures[:_DRAWN]
+        rows = [(str(f.member), f.status, f"{f.time:.6g}", f.message) for f in shown]
+        table = [("member", "failed", "time [s]", "message"), *rows]
+        return card(self.scenario(0).title, self._facts(), self.plot, [table])
+
+    def _facts(self) -> str:
+        failed = int(self.failed.sum())
+        times = " to ".join(f"{time:g}" for time in np.unique([self.time.min(), self.time.max()]))
+        return (
+            f"{len(self)} members of {self.model.num_nodes} nodes, {failed or 'none'} failed, "
+            f"t = {times} s, lanes {self.lanes}, threads {self.threads}"
+        )
 
     def _numbers(self, members: Members) -> list[int]:
         if members is None:

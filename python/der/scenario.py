@@ -9,8 +9,11 @@ import os
 from collections.abc import Mapping
 from typing import Any, TypeAlias
 
-from der._core import Scenario
+import numpy as np
+
+from der._core import Model, Scenario
 from der.examples import scene_path
+from der.html import card
 
 #: A scenario, the path of a scene file or ``example:NAME``, or a mapping with the keys of a file.
 SceneLike: TypeAlias = "Scenario | str | os.PathLike[str] | Mapping[str, Any]"
@@ -97,5 +100,22 @@ def _values(overrides: Mapping[str, Any] | None, more: dict[str, Any]) -> dict[s
     return dict(**overrides, **more)
 
 
+def _repr_html_(self: Scenario) -> str:
+    from der.plotting import plot_states  # here, because matplotlib takes long to load
+
+    model = Model(self)
+    asked = self.analysis if self.is_static else f"motion of {self.duration:g} s"
+    facts = f"{asked}, {model.num_nodes} nodes, model {model.name}: {model.reason}"
+    rods = [(rod.name, str(len(rod.nodes)), f"{rod.length:.6g}") for rod in model.rods]
+    return card(
+        self.title,
+        facts,
+        lambda: plot_states(self, model.initial_positions[np.newaxis], ["as drawn"], title=""),
+        [[("rod", "nodes", "length [m]"), *rods]],
+        self.to_yaml(),
+    )
+
+
 Scenario.load = staticmethod(load)  # type: ignore[method-assign]
 Scenario.with_ = with_  # type: ignore[method-assign]
+Scenario._repr_html_ = _repr_html_  # type: ignore[attr-defined]

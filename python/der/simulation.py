@@ -15,6 +15,7 @@ from der._core import RunRecording, Scenario
 from der.actuation_forces import ActuationForce, make_actuation_forces
 from der.analyses import Modes
 from der.errors import UnreliableResultWarning, warn
+from der.html import card
 from der.named_probes import NamedProbes
 from der.progress import ProgressFunction, ProgressLine
 from der.reactions import Reaction, make_reactions
@@ -23,6 +24,7 @@ from der.scenario import SceneLike, load
 from der.scene_loads import follows_time, value_at
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
     from scipy.sparse import csc_array
 
@@ -205,6 +207,26 @@ class Simulation(_core.Simulation):
     def probes(self) -> dict[str, float]:
         """Present value of each probe of the scene, by name, in its SI unit."""
         return NamedProbes(super().probes)
+
+    def __repr__(self) -> str:
+        """Return title, time and size in one line."""
+        return f"<der.Simulation of {self.scenario.title!r}: {self._facts()}>"
+
+    def _repr_html_(self) -> str:
+        from der.plotting import plot_states  # here, because matplotlib takes long to load
+
+        def draw() -> Figure:
+            shape = self.positions[np.newaxis].copy()
+            return plot_states(self.scenario, shape, ["now"], time=self.time, title="")
+
+        values = [(name, f"{value:.6g}") for name, value in self.probes.items()]
+        return card(self.scenario.title, self._facts(), draw, [[("probe", "now"), *values]])
+
+    def _facts(self) -> str:
+        scenario, model = self.scenario, self.model
+        kind = scenario.analysis
+        when = kind if scenario.is_static else f"t = {self.time:g} s of {scenario.duration:g} s"
+        return f"{when}, {model.num_nodes} nodes, model {model.name}"
 
     def share_done(self, end: float = math.inf) -> float:
         """Return how much of a run to its end, or to the time `end` [s], is done, from 0 to 1."""

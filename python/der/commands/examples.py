@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 
 from der.examples import PREFIX, examples
+from der.tables import text_table
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,8 +17,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print name and title of each scene, in aligned columns."""
-    titles = examples()
-    width = max(map(len, titles))
-    for name, title in titles.items():
-        print(f"{PREFIX}{name:{width}}  {title}")
+    rows = [(PREFIX + name, title) for name, title in examples().items()]
+    print("\n".join(text_table(rows)))
     return 0

@@ -69,6 +69,7 @@ from der.examples import examples
 from der.exporting import export
 from der.probe_series import ProbeSeries
 from der.reactions import Reaction
+from der.recording import Recording
 from der.result import Result
 from der.run_folder_reader import open_run
 from der.scenario import load
@@ -102,6 +103,7 @@ __all__ = [
     "ProbeSeries",
     "Quantity",
     "Reaction",
+    "Recording",
     "Result",
     "Rod",
     "Scenario",

@@ -14,6 +14,8 @@ from der.errors import DerError, UnreliableResultWarning, warn
 from der.html import card
 from der.key_paths import check_apart, check_varied
 from der.named_probes import NamedProbes
+from der.recording import result_of
+from der.result import Result
 from der.scenario import SceneLike, load
 from der.value_lists import check_value_list
 from der.whole_numbers import MOST, whole_number
@@ -279,6 +281,26 @@ class Batch(_core.Batch):
     def failures(self) -> list[MemberFailure]:
         """Why members have failed, in the order of their numbers."""
         return [MemberFailure(*row) for row in self.failure_rows()]
+
+    def result(self, member: int) -> Result:
+        """Return the present state of a member as a result with one frame, to draw and save.
+
+        Of a static scene it is the answer of its analysis, searched from the member's state.
+
+        Raises
+        ------
+        IndexError
+            If there is no such member.
+        DerError
+            If its state has numbers that are not finite, or the analysis of a static scene fails.
+        """
+        (number,) = self._numbers([member])
+        result = result_of(self.scenario(number), [self.save_state(number)])
+        for failure in self.failures:
+            if failure.member == number:
+                told = {"message": failure.message, "time": failure.time}
+                result.summary.update(status=failure.status, failure=told)
+        return result
 
     def plot(self, members: Members = None) -> Figure:
         """Draw the present shapes of members.

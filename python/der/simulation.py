@@ -19,6 +19,7 @@ from der.html import card
 from der.named_probes import NamedProbes
 from der.progress import ProgressFunction, ProgressLine
 from der.reactions import Reaction, make_reactions
+from der.recording import Recording
 from der.result import Result, to_result
 from der.scenario import SceneLike, load
 from der.scene_loads import follows_time, value_at
@@ -144,6 +145,19 @@ class Simulation(_core.Simulation):
             if error is None:
                 warn(recording.doubts, UnreliableResultWarning)
         return result
+
+    def recording(self) -> Recording:
+        """Keep states of a loop of `step` as frames, to draw, save and view them; now the first.
+
+        Examples
+        --------
+        >>> recording = simulation.recording()
+        >>> while not simulation.finished:
+        ...     simulation.step(10)
+        ...     recording.add()
+        >>> recording.result().plot()
+        """
+        return Recording(self)
 
     def modes(self, k: int = 6) -> Modes:
         """Return the `k` modes of lowest frequency about the present state.

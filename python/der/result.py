@@ -116,9 +116,11 @@ class Result(RunData):
 
     def _repr_html_(self) -> str:
         courses = list(self.probes)[:_DRAWN] if len(self.times) > 1 else []
-        draw = partial(self.plot, probes=courses, title="")
-        tables = [self.probes.table()]
-        return card(self.scenario.title, self._size(), draw if len(self.times) else None, tables)
+        what: What = "overview" if courses else "shapes"
+        nothing = self.scenario.analysis == "buckling" and self.buckling is None
+        has_shapes = len(self.times) > 0 and not nothing
+        draw = partial(self.plot, what, probes=courses, title="") if has_shapes else None
+        return card(self.scenario.title, self._size(), draw, [self.probes.table()])
 
     def _size(self) -> str:
         frames, nodes, _ = self.positions.shape

@@ -106,6 +106,18 @@ def test_a_run_without_a_frame_has_no_picture(swing):
     assert f"{caught.value.status}, 0 frames" in html
 
 
+@pytest.mark.parametrize(
+    ("analysis", "count"), [("buckling", 0), ("continuation", 1), ("modes", 1)]
+)
+def test_analyses_without_probes_or_modes(swing, analysis, count):
+    """A rod that its weight pulls does not buckle."""
+    swing["loads"] = [{"gravity": [9.81, 0]}]
+    del swing["time"], swing["output"]
+    run = der.run({**swing, "analysis": {analysis: {}}})
+    assert len(pictures(run._repr_html_())) == count
+    plt.close("all")
+
+
 def test_text_tables_are_aligned():
     assert text_table([["a", "bcd"], ["ef", "g"]]) == ["a   bcd", "ef  g"]
 

@@ -3,14 +3,15 @@
     python docs/make_figures.py [NAME...]
 
 Writes docs/images/NAME.png for each NAME, or for all of them. finger_learned, finger_traces and
-swinging are GIFs. What has been learned takes gymnasium, and view, a screenshot, takes Chromium and
-selenium: without them these pictures are left as they are.
+swinging are GIFs. What has been learned takes gymnasium, and view and notebook, two screenshots,
+take Chromium and selenium: without them these pictures are left as they are.
 """
 
 from __future__ import annotations
 
 import argparse
 import shutil
+import subprocess
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -135,6 +136,14 @@ def sweep() -> Figure:
         },
     )
     return found.plot(["tip_y", "root_moment"])
+
+
+def batch() -> Figure:
+    """Draw members of a batch whose stiffness differs."""
+    stiffness = np.geomspace(1e6, 1e8, 40)
+    members = der.Batch(SWING, 40, vary={"rods.rod.material.youngs_modulus": stiffness})
+    members.step(400)
+    return members.plot()
 
 
 def tolerance() -> Figure:
@@ -463,6 +472,20 @@ def view(path: Path) -> None:
             browser.quit()
 
 
+def notebook(path: Path) -> None:
+    """Write a screenshot of a result as a notebook shows it."""
+    chromium = shutil.which("chromium")
+    if not chromium:
+        raise ModuleNotFoundError("a screenshot takes the Debian package chromium")
+    shown = der.run("example:finger")._repr_html_()
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder) / "card.html"
+        page.write_text(f'<meta charset="utf-8"><body style="font: 14px sans-serif">{shown}')
+        flags = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
+        line = [chromium, *flags, "--window-size=680,1084", f"--user-data-dir={folder}/chromium"]
+        subprocess.run([*line, f"--screenshot={path}", page.as_uri()], check=True)
+
+
 def new_axes() -> tuple[Figure, Axes]:
     """Return a figure with one set of axes."""
     return plt.subplots(figsize=(6, 4), layout="constrained")
@@ -478,6 +501,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         convergence,
         study,
         sweep,
+        batch,
         tolerance,
         beam_modes,
         euler_buckling,
@@ -505,6 +529,7 @@ FILES: dict[str, tuple[str, Callable[[Path], None]]] = {
     "finger_traces": (".gif", finger_traces),
     "swinging": (".gif", swinging),
     "view": (".png", view),
+    "notebook": (".png", notebook),
 }
 
 

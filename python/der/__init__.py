@@ -65,11 +65,14 @@ from der.errors import (
     SceneError,
     UnreliableResultWarning,
 )
+from der.examples import examples
 from der.exporting import export
 from der.probe_series import ProbeSeries
 from der.reactions import Reaction
+from der.recording import Recording
 from der.result import Result
 from der.run_folder_reader import open_run
+from der.scenario import load
 from der.simulation import Simulation, continuation, equilibrium, run
 from der.sweeps import Sweep, load_sweep, sweep
 from der.viewing import view
@@ -77,8 +80,6 @@ from der.viewing import view
 if TYPE_CHECKING:
     from der.animation import animate
     from der.plotting import plot
-
-load = Scenario.load
 
 __all__ = [
     "ActuationForce",
@@ -102,6 +103,7 @@ __all__ = [
     "ProbeSeries",
     "Quantity",
     "Reaction",
+    "Recording",
     "Result",
     "Rod",
     "Scenario",
@@ -120,6 +122,7 @@ __all__ = [
     "animate",
     "continuation",
     "equilibrium",
+    "examples",
     "export",
     "held_nodes",
     "json_schema",

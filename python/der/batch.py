@@ -11,13 +11,17 @@ import numpy as np
 from der import _core
 from der._core import EquilibriumReport, State
 from der.errors import DerError, UnreliableResultWarning, warn
+from der.html import card
 from der.key_paths import check_apart, check_varied
 from der.named_probes import NamedProbes
-from der.simulation import SceneLike, as_scenario
+from der.recording import result_of
+from der.result import Result
+from der.scenario import SceneLike, load
 from der.value_lists import check_value_list
 from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 #: Numbers of members, a mask of all, the number of one, or None for all.
@@ -26,6 +30,8 @@ Members: TypeAlias = "Iterable[int] | NDArray[np.bool_] | int | None"
 
 #: More threads than any machine runs at once are a slip.
 MOST_THREADS = 4096
+#: Members that are drawn unless they are named.
+_DRAWN = 8
 
 
 @dataclass(frozen=True)
@@ -108,7 +114,7 @@ class Batch(_core.Batch):
         *,
         vary: Mapping[str, ArrayLike | Sequence[Any]] | None = None,
     ) -> None:
-        scenario = as_scenario(scene)
+        scenario = load(scene)
         members = whole_number("members", members, 1, MOST)
         if threads is not None:
             threads = whole_number("threads", threads, 1, MOST_THREADS)
@@ -275,6 +281,74 @@ class Batch(_core.Batch):
     def failures(self) -> list[MemberFailure]:
         """Why members have failed, in the order of their numbers."""
         return [MemberFailure(*row) for row in self.failure_rows()]
+
+    def result(self, member: int) -> Result:
+        """Return the present state of a member as a result with one frame, to draw and save.
+
+        Of a static scene it is the answer of its analysis, searched from the member's state.
+
+        Raises
+        ------
+        IndexError
+            If there is no such member.
+        DerError
+            If its state has numbers that are not finite, or the analysis of a static scene fails.
+        """
+        (number,) = self._numbers([member])
+        result = result_of(self.scenario(number), [self.save_state(number)])
+        for failure in self.failures:
+            if failure.member == number:
+                told = {"message": failure.message, "time": failure.time}
+                result.summary.update(status=failure.status, failure=told)
+        return result
+
+    def plot(self, members: Members = None) -> Figure:
+        """Draw the present shapes of members.
+
+        Parameters
+        ----------
+        members
+            Numbers of members, a mask of shape (members,), or one number; without it, up to eight
+            that are evenly chosen.
+
+        Raises
+        ------
+        IndexError
+            If there is no such member.
+        ValueError
+            If none is named.
+        """
+        from der.plotting import plot_states  # here, because matplotlib takes long to load
+
+        count = len(self)
+        if members is None:
+            members = np.unique(np.linspace(0, count - 1, _DRAWN).astype(int))
+        numbers = self._numbers(members)
+        if not numbers:
+            raise ValueError("no member to draw is named: name one, or leave members out")
+        labels = [f"member {n}{' (failed)' if self.failed[n] else ''}" for n in numbers]
+        first = self.scenario(numbers[0])
+        title = f"{first.title}: {len(numbers)} of {count} members"
+        now = float(self.time[numbers[-1]])
+        return plot_states(first, self.positions[numbers], labels, time=now, title=title)
+
+    def __repr__(self) -> str:
+        """Return title, time and size in one line."""
+        return f"<der.Batch of {self.scenario(0).title!r}: {self._facts()}>"
+
+    def _repr_html_(self) -> str:
+        shown = self.failures[:_DRAWN]
+        rows = [(str(f.member), f.status, f"{f.time:.6g}", f.message) for f in shown]
+        table = [("member", "failed", "time [s]", "message"), *rows]
+        return card(self.scenario(0).title, self._facts(), self.plot, [table])
+
+    def _facts(self) -> str:
+        failed = int(self.failed.sum())
+        times = " to ".join(f"{time:g}" for time in np.unique([self.time.min(), self.time.max()]))
+        return (
+            f"{len(self)} members of {self.model.num_nodes} nodes, {failed or 'none'} failed, "
+            f"t = {times} s, lanes {self.lanes}, threads {self.threads}"
+        )
 
     def _numbers(self, members: Members) -> list[int]:
         if members is None:

@@ -17,7 +17,7 @@ from der.interrupts import end_with_interrupts, take_one_interrupt
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a subcommand and return its exit code, as der_run has them.
+    """Run a subcommand and return its exit code, as der_run has them; without one, print the help.
 
     0, or with a message on stderr 3 if a run failed and 1 for anything else; a command may have
     others of its own. 2 for a command line that cannot be read, 130 after Ctrl-C. Without a message
@@ -40,7 +40,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _execute(arguments: Sequence[str] | None) -> int:
     try:
         try:
-            chosen = _make_parser().parse_args(arguments)
+            parser = _make_parser()
+            chosen = parser.parse_args(arguments)
+            if chosen.execute is None:
+                parser.print_help()
+                return 0
             return int(chosen.execute(chosen))
         finally:
             # Here and not when Python ends, where nobody catches errors. There may be no stdout.
@@ -85,7 +89,8 @@ def _make_parser() -> argparse.ArgumentParser:
         prog="der", description="Simulate slender elastic rods, and look at what came out."
     )
     parser.add_argument("--version", action="version", version=f"der {__version__}")
-    subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    parser.set_defaults(execute=None)
+    subparsers = parser.add_subparsers(title="commands", metavar="COMMAND")
     for name in sorted(module.name for module in pkgutil.iter_modules(commands.__path__)):
         command = importlib.import_module(f"{commands.__name__}.{name}")
         text = command.__doc__ or ""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der.named_probes import NamedProbes
+from der.tables import html_table, text_table
 
 
 class ProbeSeries(np.ndarray[Any, np.dtype[np.float64]]):
@@ -54,11 +55,31 @@ class ProbeSeries(np.ndarray[Any, np.dtype[np.float64]]):
         return ProbeSeries, (np.array(self), self.unit, self.summary)
 
 
+class Probes(NamedProbes[ProbeSeries]):
+    """The probes of a run by name; as text a table with unit, final value and extremes of each."""
+
+    def table(self) -> list[list[str]]:
+        """Return the table's rows, its header first; a run that is not over has no extremes."""
+        values = ("final", "min", "max")
+        rows = [["probe", "unit", *values]]
+        for name, probe in self.items():
+            known = (f"{probe.summary[key]:.6g}" if key in probe.summary else "" for key in values)
+            rows.append([name, probe.unit, *known])
+        return rows
+
+    def __repr__(self) -> str:
+        """Return the table in lines."""
+        return "\n".join(text_table(self.table()) if self else ["no probes"])
+
+    def _repr_html_(self) -> str:
+        return html_table(self.table())
+
+
 def make_probes(
     values: Mapping[str, NDArray[np.float64]], units: Mapping[str, str], summary: Mapping[str, Any]
-) -> dict[str, ProbeSeries]:
+) -> Probes:
     """Join values, units and the ``probes`` part of a run's summary, by name."""
     parts = summary.get("probes", {})
-    return NamedProbes(
+    return Probes(
         {name: ProbeSeries(values[name], units[name], parts.get(name, {})) for name in values}
     )

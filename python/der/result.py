@@ -5,21 +5,31 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from der.exporting import ExportFormat, export
+from der.html import card
 from der.probe_series import make_probes
 from der.progress import ProgressFunction
 from der.run_data import RunData, Sections
 from der.run_folder_writer import save_run
+from der.tables import data_frame
 from der.viewing import view
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.figure import Figure
 
     from der._core import Recording, Scenario
     from der.plotting.overview import What
+
+
+#: How many probes the picture in a notebook has.
+_DRAWN = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,9 +73,26 @@ class Result(RunData):
         """Write nodes, probes and quantities along rods for other programs; see `der.export`."""
         return export(self, format, out, progress=progress)
 
-    def view(self, path: str | os.PathLike[str], *, open: bool = False) -> Path:
-        """Write an interactive 3D view as one HTML file; see `der.view`."""
+    def view(self, path: str | os.PathLike[str] | None = None, *, open: bool | None = None) -> Path:
+        """Show an interactive 3D view, or write it as one HTML file; see `der.view`."""
         return view(self, path, open=open)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the probes as a table of pandas, with the times [s] of the frames as its index.
+
+        Of a continuation the index has the load factors. ``attrs["units"]`` has the units of the
+        columns.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            Without pandas.
+        """
+        path = self.path
+        index = {"time": self.times} if path is None else {"load factor": path.factor}
+        columns = {name: np.asarray(probe) for name, probe in self.probes.items()}
+        units = {name: probe.unit for name, probe in self.probes.items()}
+        return data_frame(columns, index, units)
 
     def save(self, folder: str | os.PathLike[str]) -> Path:
         """Write a run folder that `der.open_run` reads, and return its path.
@@ -84,11 +111,20 @@ class Result(RunData):
 
     def __repr__(self) -> str:
         """Return title, status and size in one line."""
+        names = ", ".join(self.probes) or "none"
+        return f"<der.Result of {self.scenario.title!r}: {self._size()}, probes: {names}>"
+
+    def _repr_html_(self) -> str:
+        courses = list(self.probes)[:_DRAWN] if len(self.times) > 1 else []
+        what: What = "overview" if courses else "shapes"
+        nothing = self.scenario.analysis == "buckling" and self.buckling is None
+        has_shapes = len(self.times) > 0 and not nothing
+        draw = partial(self.plot, what, probes=courses, title="") if has_shapes else None
+        return card(self.scenario.title, self._size(), draw, [self.probes.table()])
+
+    def _size(self) -> str:
         frames, nodes, _ = self.positions.shape
-        return (
-            f"<der.Result of {self.scenario.title!r}: {self.status}, {frames} frames of "
-            f"{nodes} nodes, probes: {', '.join(self.probes) or 'none'}>"
-        )
+        return f"{self.status}, {frames} frame{'' if frames == 1 else 's'} of {nodes} nodes"
 
 
 def to_result(

@@ -19,7 +19,7 @@ from der.analyses import (
     make_modes,
     make_path,
 )
-from der.probe_series import ProbeSeries
+from der.probe_series import Probes
 from der.reactions import Reaction, make_reactions
 
 
@@ -82,7 +82,8 @@ class RunData:
         ``solver``'s residual went in; ``drag`` and the ``numerical`` loss of the time stepping went
         out.
     probes
-        Probes by name, each an array of shape (frames,) with its ``unit`` and ``summary``.
+        Probes by name, each an array of shape (frames,) with its ``unit`` and ``summary``. Printed,
+        they are a table of final values and extremes.
     summary
         The content of ``summary.json`` of a run folder: status, model, solver, costs, probes.
     data
@@ -104,7 +105,7 @@ class RunData:
     velocities: NDArray[np.float64]
     energies: dict[str, NDArray[np.float64]]
     work: dict[str, NDArray[np.float64]]
-    probes: dict[str, ProbeSeries]
+    probes: Probes
     summary: dict[str, Any]
     data: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     sections: Sections | None = None

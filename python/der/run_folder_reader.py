@@ -13,6 +13,7 @@ from typing import Any
 from der._core import FileRecording, Scenario, read_run
 from der.errors import DerError
 from der.result import Result, to_result
+from der.sweeps.store import FRAMES, is_sweep
 
 
 def open_run(folder: str | os.PathLike[str]) -> Result:
@@ -36,10 +37,17 @@ def open_run(folder: str | os.PathLike[str]) -> Result:
         If there is no ``results.h5``.
     ValueError
         If it is damaged, is no run file, or was written by another version of der; the message says
-        what to do.
+        what to do; if the folder is that of a sweep.
     """
     folder = Path(folder)
     path = folder / "results.h5"
+    if not path.exists() and is_sweep(folder):
+        kept = folder / FRAMES
+        advice = f"; its members are runs, in {kept}" if kept.is_dir() else ""
+        raise ValueError(
+            f"{folder} is a sweep of many runs, and no run: `der plot {folder}` draws it, `der "
+            f"export {folder} --format csv` writes its table, der.load_sweep reads it{advice}"
+        )
     if not path.exists():
         raise FileNotFoundError(f"no run in {folder}: {path} does not exist")
     try:

@@ -15,18 +15,19 @@ from der._core import RunRecording, Scenario
 from der.actuation_forces import ActuationForce, make_actuation_forces
 from der.analyses import Modes
 from der.errors import UnreliableResultWarning, warn
+from der.html import card
 from der.named_probes import NamedProbes
 from der.progress import ProgressFunction, ProgressLine
 from der.reactions import Reaction, make_reactions
+from der.recording import Recording
 from der.result import Result, to_result
+from der.scenario import SceneLike, load
 from der.scene_loads import follows_time, value_at
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
     from scipy.sparse import csc_array
-
-#: A scenario, the path of a scene file, or a dict with the keys of a scene file.
-SceneLike: TypeAlias = "Scenario | str | os.PathLike[str] | dict[str, Any]"
 
 #: Called after every step; False stops the run, True and None let it go on.
 StepCallback: TypeAlias = "Callable[[Simulation], bool | None]"
@@ -57,7 +58,7 @@ class Simulation(_core.Simulation):
     """
 
     def __init__(self, scenario: SceneLike) -> None:
-        super().__init__(as_scenario(scenario))
+        super().__init__(load(scenario))
         warn(self.scenario.warnings)
 
     def run(
@@ -145,6 +146,19 @@ class Simulation(_core.Simulation):
                 warn(recording.doubts, UnreliableResultWarning)
         return result
 
+    def recording(self) -> Recording:
+        """Keep states of a loop of `step` as frames, to draw, save and view them; now the first.
+
+        Examples
+        --------
+        >>> recording = simulation.recording()
+        >>> while not simulation.finished:
+        ...     simulation.step(10)
+        ...     recording.add()
+        >>> recording.result().plot()
+        """
+        return Recording(self)
+
     def modes(self, k: int = 6) -> Modes:
         """Return the `k` modes of lowest frequency about the present state.
 
@@ -208,6 +222,26 @@ class Simulation(_core.Simulation):
         """Present value of each probe of the scene, by name, in its SI unit."""
         return NamedProbes(super().probes)
 
+    def __repr__(self) -> str:
+        """Return title, time and size in one line."""
+        return f"<der.Simulation of {self.scenario.title!r}: {self._facts()}>"
+
+    def _repr_html_(self) -> str:
+        from der.plotting import plot_states  # here, because matplotlib takes long to load
+
+        def draw() -> Figure:
+            shape = self.positions[np.newaxis].copy()
+            return plot_states(self.scenario, shape, ["now"], time=self.time, title="")
+
+        values = [(name, f"{value:.6g}") for name, value in self.probes.items()]
+        return card(self.scenario.title, self._facts(), draw, [[("probe", "now"), *values]])
+
+    def _facts(self) -> str:
+        scenario, model = self.scenario, self.model
+        kind = scenario.analysis
+        when = kind if scenario.is_static else f"t = {self.time:g} s of {scenario.duration:g} s"
+        return f"{when}, {model.num_nodes} nodes, model {model.name}"
+
     def share_done(self, end: float = math.inf) -> float:
         """Return how much of a run to its end, or to the time `end` [s], is done, from 0 to 1."""
         duration = min(end, self.scenario.duration)
@@ -224,7 +258,7 @@ class Simulation(_core.Simulation):
             raise ValueError(
                 f"until = {until:g} s must lie between the present time, {self.time:g} s, and the "
                 f"scene's end, {self.scenario.duration:g} s; for a longer run, vary the scenario "
-                'with with_(**{"time.duration": ...})'
+                'with with_({"time.duration": ...})'
             )
         return until
 
@@ -250,10 +284,11 @@ def _goes_on(answer: bool | None) -> bool:
 
 def run(
     scenario: SceneLike,
+    overrides: Mapping[str, Any] | None = None,
+    *,
     out: str | os.PathLike[str] | None = None,
     callback: StepCallback | None = None,
     progress: bool | ProgressFunction = False,
-    *,
     check: bool = True,
 ) -> Result:
     """Run a scene from its start to its end and return what was recorded.
@@ -262,6 +297,8 @@ def run(
     ----------
     scenario
         A scenario, the path of a scene file, or a dict with the keys of a scene file.
+    overrides
+        Values by their key paths, in place of those of the scene; see `Scenario.with_`.
     out
         Folder to write the run to.
     callback
@@ -285,10 +322,12 @@ def run(
 
     Examples
     --------
-    >>> result = der.run("configs/simply_supported.yaml")
+    >>> result = der.run("configs/simply_supported.yaml", {"rods.beam.nodes": 101})
     >>> result.summary["probes"]["deflection"]["final"]
     """
-    return Simulation(scenario).run(callback, out=out, progress=progress, check=check)
+    return Simulation(load(scenario, overrides)).run(
+        callback, out=out, progress=progress, check=check
+    )
 
 
 def equilibrium(scenario: SceneLike) -> Result:
@@ -310,7 +349,7 @@ def equilibrium(scenario: SceneLike) -> Result:
     NotConvergedError
         If no equilibrium is found.
     """
-    scene = as_scenario(scenario)
+    scene = load(scenario)
     return run(scene if scene.analysis == "static" else as_static(scene))
 
 
@@ -365,7 +404,7 @@ def continuation(
         "points": points,
         "branches": branches,
     }
-    return run(_with_analysis(as_scenario(scenario), {"continuation": settings}), out)
+    return run(_with_analysis(load(scenario), {"continuation": settings}), out=out)
 
 
 def as_static(scenario: Scenario) -> Scenario:
@@ -395,28 +434,6 @@ def _at_time_0(part: Any) -> Any:
     if isinstance(part, list):
         return [_at_time_0(value) for value in part]
     return part
-
-
-def as_scenario(scenario: SceneLike) -> Scenario:
-    """Return a scenario as it is; load a path; validate a dict.
-
-    Raises
-    ------
-    SceneError
-        If the scene is not valid.
-    TypeError
-        For anything else.
-    """
-    if isinstance(scenario, Scenario):
-        return scenario
-    if isinstance(scenario, Mapping):
-        return Scenario.from_dict(dict(scenario))
-    if isinstance(scenario, (str, os.PathLike)):
-        return Scenario.load(scenario)
-    raise TypeError(
-        "expected a Scenario, the path of a scene file, or a dict with its keys, got "
-        f"{scenario!r} ({type(scenario).__name__})"
-    )
 
 
 def recorded_result(scenario: Scenario, recording: RunRecording) -> Result:

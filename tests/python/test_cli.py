@@ -39,6 +39,24 @@ def test_help_lists_every_command(capsys):
     assert {line.split()[0] for line in listed.splitlines() if line.startswith("    ")} >= names
 
 
+def test_without_a_command_it_prints_the_help(capsys):
+    assert main([]) == 0
+    assert capsys.readouterr().out.startswith("usage: der")
+
+
+@pytest.mark.parametrize("arguments", [["view"], ["animate"], ["plot", "--what", "shapes"]])
+def test_a_sweep_is_told_from_a_run(tube, tmp_path, capsys, arguments):
+    der.sweep(tube, {"rods.beam.nodes": [5, 6]}, out=tmp_path / "sweep", frames=True)
+    assert main([arguments[0], str(tmp_path / "sweep"), *arguments[1:]]) == 1
+    error = capsys.readouterr().err
+    assert "a sweep" in error
+    if arguments[0] != "plot":
+        assert f"`der plot {tmp_path / 'sweep'}` draws it" in error
+        kept = tmp_path / "sweep" / "runs"
+        assert error.endswith(f"its members are runs, in {kept}\n")
+        assert der.open_run(kept / "0000" / "0000001").positions.shape[1] == 6
+
+
 def test_version(capsys):
     with pytest.raises(SystemExit) as caught:
         main(["--version"])
@@ -56,6 +74,19 @@ def test_run_is_the_program(scene, tmp_path):
     assert result.positions.shape[1] == 11
     assert "--resume" in command("run", "--help").stdout
     assert command("run", "no_such.yaml").returncode == 4
+
+
+def test_examples_are_listed_and_run_by_name(tmp_path, capsys):
+    assert main(["examples"]) == 0
+    listed = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in listed] == [f"example:{name}" for name in der.examples()]
+    assert "A soft finger closes and opens" in "".join(listed)
+    done = command("run", "--quiet", "example:cantilever", "--out", tmp_path / "run")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert der.open_run(tmp_path / "run").scenario.title == der.examples()["cantilever"]
+    assert main(["check", "example:cantilever"]) == 0
+    assert main(["check", "example:cantiliver"]) == 1
+    assert "error: there is no example 'cantiliver'; there are " in capsys.readouterr().err
 
 
 def test_run_with_no_program_to_be_found(monkeypatch, capsys):

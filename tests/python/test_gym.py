@@ -10,6 +10,7 @@ import pytest
 gymnasium = pytest.importorskip("gymnasium")
 
 from der.gym import RodEnv, RodVectorEnv, Task  # noqa: E402
+from der.gym.finger_reach import REACHING  # noqa: E402
 from gymnasium.spaces import Box, Dict, Discrete, MultiBinary, MultiDiscrete, Tuple  # noqa: E402
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
@@ -511,3 +512,61 @@ def test_a_scene_without_a_start_is_refused():
     scene["loads"][2]["point_force"]["force"] = [-1e9, 0]
     with pytest.raises(der.DerError):
         RodVectorEnv(reaching(scene=scene), 2)
+
+
+def test_pictures_of_an_environment():
+    env = RodEnv(REACHING, render_mode="rgb_array")
+    assert env.metadata["render_fps"] == pytest.approx(20.0)
+    env.reset(seed=3)
+    first = env.render()
+    assert first.shape == (480, 480, 3)
+    assert first.dtype == np.uint8
+    np.testing.assert_array_equal(env.render(), first)
+    for _ in range(4):
+        env.step(np.array([-1.0, 0.5]))
+    second = env.render()
+    # The rod is blue and the ring of the target orange: one has moved, the other has not.
+    blue = [here[..., 2] > here[..., 0] + 30.0 for here in (first, second)]
+    orange = [here[..., 0] > here[..., 2] + 30.0 for here in (first, second)]
+    assert blue[0].sum() > 500
+    assert (blue[0] != blue[1]).sum() > 500
+    assert orange[0].sum() > 20
+    # Within the line's width, since the rod may be drawn over it.
+    np.testing.assert_allclose(*(np.argwhere(one).mean(axis=0) for one in orange), atol=3.0)
+    assert RodEnv(REACHING).render() is None
+    with pytest.raises(ValueError, match="render_mode must be 'rgb_array' or None, got 'human'"):
+        RodEnv(REACHING, render_mode="human")
+
+
+def test_pictures_in_space(helix):
+    """A strip that falls along z from a clamp: its picture moves down, and its clamp stays."""
+    task = Task(
+        scene=helix,
+        action_space=Box(-1.0, 1.0, (1,), np.float64),
+        act=lambda batch, actions: None,
+        observe=lambda batch: batch.positions[:, -1],
+        reward=lambda batch, actions: np.zeros(len(batch)),
+        marks=lambda batch: batch.positions[:, :1],
+        steps_per_action=30,
+    )
+    env = RodEnv(task, render_mode="rgb_array")
+    env.reset(seed=1)
+    pictures = [env.render()]
+    env.step(np.zeros(1))
+    pictures.append(env.render())
+    assert (pictures[0] != pictures[1]).sum() > 200
+    orange = [picture[..., 0] > picture[..., 2] + 30.0 for picture in pictures]
+    np.testing.assert_allclose(*(np.argwhere(one).mean(axis=0) for one in orange), atol=1.0)
+
+
+def test_gymnasium_makes_the_finger():
+    env = gymnasium.make("der/FingerReach-v0", render_mode="rgb_array")
+    seen, _ = env.reset(seed=7)
+    expected, _ = RodEnv(REACHING).reset(seed=7)
+    np.testing.assert_array_equal(seen, expected)
+    assert env.render().shape == (480, 480, 3)
+    envs = gymnasium.make_vec("der/FingerReach-v0", num_envs=3)
+    seen, _ = envs.reset(seed=7)
+    np.testing.assert_array_equal(seen[0], expected)
+    truncated = [envs.step(np.zeros((3, 2)))[3].all() for _ in range(20)]
+    assert truncated == [False] * 19 + [True]

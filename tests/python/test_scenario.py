@@ -1,13 +1,18 @@
 """Scenarios from files, texts and dicts: one validator, one set of messages."""
 
+import inspect
 import math
 import pickle
 import re
 from collections import OrderedDict
+from pathlib import Path
+from types import MappingProxyType
 
 import der
 import numpy as np
 import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_dict_and_text_give_the_same_scene(tube, tmp_path):
@@ -234,6 +239,34 @@ def test_load_and_parse_take_overrides(tube, tmp_path):
     path.write_text(text)
     assert der.load(path, **{"rods.beam.nodes": 5}).to_dict()["rods"][0]["nodes"] == 5
     assert der.Scenario.parse(text, title="other").title == "other"
+
+
+def test_overrides_are_mappings_or_keywords(tube):
+    nodes = MappingProxyType({"rods.beam.nodes": 5})
+    scenario = der.load(tube, nodes, title="Coarse")
+    assert scenario.title == "Coarse"
+    assert scenario.with_({"title": "Again"}).title == "Again"
+    assert scenario.to_dict()["rods"][0]["nodes"] == 5
+    assert der.load(scenario) is scenario
+    assert der.run(tube, nodes).positions.shape[1] == 5
+    with pytest.raises(TypeError, match=r"multiple values .*'title'"):
+        scenario.with_({"title": "a"}, title="b")
+
+
+def test_signatures_are_shown_by_help():
+    """Of the methods that Python has replaced; those of the engine have them in their texts."""
+    assert list(inspect.signature(der.Scenario.with_).parameters) == ["self", "overrides", "more"]
+    assert list(inspect.signature(der.Scenario.load).parameters) == ["scene", "overrides", "more"]
+
+
+def test_examples_are_loaded_by_name():
+    names = der.examples()
+    files = {path.stem: path for path in (ROOT / "configs").glob("*.yaml")}
+    assert set(names) == set(files)
+    for name, title in names.items():
+        assert title == der.load(f"example:{name}").title == der.load(files[name]).title
+    with pytest.raises(FileNotFoundError, match=r"no example 'fingr'; there are .* finger,"):
+        der.load("example:fingr")
 
 
 def test_pickle(tube):

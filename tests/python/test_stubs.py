@@ -97,6 +97,8 @@ def split_arguments(text):
 @pytest.mark.parametrize(("name", "definition"), list(stub_functions()))
 def test_signatures(name, definition):
     found = look_up(name)
+    if inspect.isfunction(found):
+        return  # written in Python: test_names compares its signature
     if is_property(definition):
         assert isinstance(found, property)
         assert found.fset is None or definition.name in WRITABLE

@@ -65,10 +65,25 @@ def test_numpy(folder):
 
 def test_pandas(folder):
     package_of_tables("pandas")
-    table = der.load_sweep(folder).to_pandas()
-    assert table.index.name == "member"
-    assert table[FORCE].tolist() == [-2.0, -2.0, -1.5, -1.5]
-    assert table["tip_y.final"].isna().tolist() == [False, True, False, True]
+    sweep = der.load_sweep(folder)
+    table = sweep.to_pandas()
+    assert list(table.columns) == ["tip_y"]
+    assert table.index.names == [FORCE, STIFFNESS]
+    assert table.index.to_list() == [(-2.0, 1.0), (-2.0, -1.0), (-1.5, 1.0), (-1.5, -1.0)]
+    assert table["tip_y"].isna().tolist() == [False, True, False, True]
+    assert table.attrs["units"] == {"tip_y": "m"}
+    chosen = sweep.to_pandas(["tip_y", "status", "tip_y.max"])
+    assert list(chosen.columns) == ["tip_y", "status", "tip_y.max"]
+    assert chosen["status"].tolist() == [row["status"] for row in sweep.rows]
+    with pytest.raises(KeyError, match="no column 'tip_z'"):
+        sweep.to_pandas(["tip_z"])
+
+
+def test_three_answers_are_three_columns_of_pandas():
+    package_of_tables("pandas")
+    table = der.sweep("example:cantilever", {"rods.arm.nodes": [5, 7]}).to_pandas()
+    assert list(table.columns) == ["tip_x", "tip_y", "root_moment"]
+    assert table.index.to_list() == [5, 7]
 
 
 def test_parquet(folder, tmp_path):

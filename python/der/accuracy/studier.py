@@ -38,7 +38,7 @@ from der.errors import warn
 from der.parallel import Task, Workers, total_weight
 from der.progress import ProgressFunction
 from der.result import Result
-from der.simulation import SceneLike, as_scenario
+from der.scenario import SceneLike, load
 
 #: All runs cost about this many times what the scene itself does, where that takes long enough for
 #: its progress to be seen: before it has run, no one knows.
@@ -100,7 +100,7 @@ def study(
         For jobs that are no whole number.
     """
     check_arguments(nodes, steps, steppers, max_seconds)
-    given = as_scenario(scenario)
+    given = load(scenario)
     warn(given.warnings)
     scene = with_default_probes(given)
     notes = [] if scene is given else [DEFAULT_PROBES]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from der.accuracy.error_bars import ErrorEstimate
 from der.accuracy.verified_value import VerifiedValue
+from der.tables import text_table
 
 
 def values_to_show(values: Sequence[VerifiedValue], duration: float) -> list[VerifiedValue]:
@@ -33,11 +34,7 @@ def value_table(values: Sequence[VerifiedValue]) -> list[str]:
     if all(value.drawing is None for value in values):
         left_out = header.index("drawing")
         rows = [row[:left_out] + row[left_out + 1 :] for row in rows]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
+    return text_table(rows)
 
 
 def summary_line(

@@ -26,7 +26,7 @@ from der.errors import warn
 from der.parallel import Workers
 from der.progress import ProgressFunction
 from der.result import Result
-from der.simulation import SceneLike, as_scenario
+from der.scenario import SceneLike, load
 from der.whole_numbers import whole_number
 
 #: Where the cross-check run contradicts, the error is at most this times the difference to it.
@@ -87,7 +87,7 @@ def verify(
     """
     if levels is not None and (levels := whole_number("levels", levels)) not in (2, 3):
         raise ValueError(f"levels must be 2 or 3, got {levels}")
-    given = as_scenario(scenario)
+    given = load(scenario)
     warn(given.warnings)
     scene = with_default_probes(given)
     runner = run_levels(scene, levels, Workers(jobs, progress))

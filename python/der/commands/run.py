@@ -10,6 +10,8 @@ import sys
 import sysconfig
 from pathlib import Path
 
+from der.examples import scene_path
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Take everything that follows as it is."""
@@ -26,7 +28,7 @@ def execute(arguments: argparse.Namespace) -> int:
     sys.stdout.flush()
     # Python ignores it, and so would der_run, which is ended by it otherwise: `der run ... | head`.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    os.execv(program, [str(program), *arguments.arguments])
+    os.execv(program, [str(program), *map(scene_path, arguments.arguments)])
 
 
 def _find_program() -> Path:

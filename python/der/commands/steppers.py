@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 
 from der import steppers
+from der.tables import text_table
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,8 +23,5 @@ def execute(arguments: argparse.Namespace) -> int:
         kind = "implicit" if info.implicit else "explicit"
         keeps = "yes" if info.keeps_angular_momentum else "no"
         rows.append((info.name, str(info.order), kind, info.stability, keeps, info.damping))
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    for row in rows:
-        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-        print("  ".join(cells).rstrip())
+    print("\n".join(text_table(rows)))
     return 0

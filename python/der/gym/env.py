@@ -10,6 +10,7 @@ from gymnasium.error import ResetNeeded
 
 from der.gym.episodes import Episodes
 from der.gym.play import Play
+from der.gym.screen import Screen
 from der.gym.task import Task
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ class RodEnv(gymnasium.Env["NDArray[Any]", Any]):
     ----------
     task
         What is played.
+    render_mode
+        ``"rgb_array"``, or None for an environment that draws no pictures.
 
     Raises
     ------
@@ -36,11 +39,20 @@ class RodEnv(gymnasium.Env["NDArray[Any]", Any]):
         Where a function of the task returns something of another shape than it should.
     """
 
-    def __init__(self, task: Task) -> None:
+    metadata = {"render_modes": ["rgb_array"]}  # noqa: RUF012, as in the base
+
+    def __init__(self, task: Task, render_mode: str | None = None) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode must be 'rgb_array' or None, got {render_mode!r}")
         self._play = Play(task, members=1, threads=1)
         self.action_space = task.action_space
         self.observation_space = self._play.space
         self._running = False
+        self._marks = task.marks
+        self._screen: Screen | None = None
+        self.render_mode = render_mode
+        actions = int(self.batch.total_steps[0]) / task.steps_per_action
+        self.metadata = {**self.metadata, "render_fps": actions / self.batch.scenario(0).duration}
 
     @property
     def batch(self) -> Episodes:
@@ -68,6 +80,19 @@ class RodEnv(gymnasium.Env["NDArray[Any]", Any]):
         self._play.begin([0], [self.np_random])
         self._running = True
         return self._play.observations()[0], {}
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return the picture of the present state, shape (height, width, 3).
+
+        The axes never change: there is as much room around the start as half the length of all
+        rods. Points of `Task.marks` are rings. None without a `render_mode`.
+        """
+        if self.render_mode is None:
+            return None
+        if self._screen is None:
+            self._screen = Screen(self.batch)
+        marked = np.empty(0) if self._marks is None else np.asarray(self._marks(self.batch))
+        return self._screen.draw(self.batch, marked.reshape(-1, self.batch.model.dimension))
 
     def step(self, action: Any) -> tuple[NDArray[Any], float, bool, bool, dict[str, Any]]:
         """Take an action.

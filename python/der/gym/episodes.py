@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from der.batch import Batch
-from der.simulation import SceneLike
+from der.scenario import SceneLike
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

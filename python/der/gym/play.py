@@ -12,7 +12,7 @@ from gymnasium.spaces import Box
 from der.gym.actions import check_actions
 from der.gym.episodes import Episodes
 from der.gym.task import Task
-from der.simulation import as_scenario
+from der.scenario import load
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -61,7 +61,7 @@ class Play:
         if not isinstance(task, Task):
             raise TypeError(f"an environment plays a der.gym.Task, got {task!r}")
         self._task = task
-        scenario = as_scenario(task.scene)
+        scenario = load(task.scene)
         if scenario.is_static:
             raise ValueError(
                 "an episode is a run over time, and the scene is static: give it a time with a "

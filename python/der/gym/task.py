@@ -11,7 +11,7 @@ from gymnasium import Space
 from gymnasium.spaces import Box
 
 from der.gym.episodes import Episodes
-from der.simulation import SceneLike
+from der.scenario import SceneLike
 from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 #: Functions that a task can do without.
-_OPTIONAL = ("draw", "noise", "terminate")
+_OPTIONAL = ("draw", "noise", "terminate", "marks")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +57,9 @@ class Task:
         (members,), beside those that failed.
     observation_space
         Of one member; unbounded numbers of double precision, unless given.
+    marks
+        ``marks(batch)`` returns points [m] that pictures mark, such as targets, shape (members,
+        points, dim).
     steps_per_action
         How many time steps of the scene an action lasts.
     max_steps
@@ -71,6 +74,7 @@ class Task:
     draw: Callable[[np.random.Generator], ArrayLike] | None = None
     noise: Callable[[Episodes, int, np.random.Generator], None] | None = None
     terminate: Callable[[Episodes], ArrayLike] | None = None
+    marks: Callable[[Episodes], ArrayLike] | None = None
     observation_space: Box | None = None
     steps_per_action: int = 1
     max_steps: int | None = None
@@ -103,7 +107,7 @@ class Task:
             raise TypeError(
                 f"observation_space must be a Box of gymnasium, got {self.observation_space!r}"
             )
-        for name in ("act", "observe", "reward", "draw", "noise", "terminate"):
+        for name in ("act", "observe", "reward", *_OPTIONAL):
             function = getattr(self, name)
             if not callable(function) and not (name in _OPTIONAL and function is None):
                 raise TypeError(f"{name} must be a function, got {function!r}")

@@ -1,7 +1,7 @@
 """Pictures of results: one style, shapes drawn to scale, quantities with their units."""
 
 from der.plotting.loads import draw_loads
-from der.plotting.overview import plot
+from der.plotting.overview import plot, plot_states
 from der.plotting.probes import draw_probe
 from der.plotting.shapes import draw_shapes, pick_frames
 from der.plotting.style import PALETTE, style, time_colours
@@ -16,6 +16,7 @@ __all__ = [
     "draw_supports",
     "pick_frames",
     "plot",
+    "plot_states",
     "style",
     "time_colours",
 ]

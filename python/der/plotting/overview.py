@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import ended_as_asked
+from der._core import Scenario, ended_as_asked
 from der.film import title_of
 from der.plotting.actuation import add_actuation_to_legend, draw_actuation
 from der.plotting.analyses import plot_modes, plot_path
@@ -30,6 +30,7 @@ from der.plotting.style import (
     wrapped,
 )
 from der.plotting.supports import draw_foundations, draw_springs, draw_supports
+from der.probe_series import Probes
 from der.run_data import RunData
 
 Array = NDArray[np.float64]
@@ -114,6 +115,53 @@ def plot(
         for axes in figure.axes[: len(pictures)]:
             if axes.get_aspect() == 1.0 and kind not in ("modes", "buckling"):
                 make_exactly_equal(figure, axes)
+    return figure
+
+
+def plot_states(
+    scenario: Scenario,
+    positions: Array,
+    labels: Sequence[str],
+    *,
+    time: float = 0.0,
+    title: str | None = None,
+) -> Figure:
+    """Draw shapes of a scene that are not those of a run, with its supports and loads.
+
+    Parameters
+    ----------
+    scenario
+        The scene.
+    positions
+        Positions of the nodes [m], shape (shapes, nodes, dim).
+    labels
+        What the legend calls each shape.
+    time
+        When supports and loads stand as they are drawn [s].
+    title
+        In place of the scene's title.
+    """
+    count = len(positions)
+    picture = Picture(
+        RunData(
+            scenario=scenario,
+            times=np.full(count, time),
+            steps=np.zeros(count, dtype=np.int64),
+            positions=positions,
+            velocities=np.zeros_like(positions),
+            energies={},
+            work={},
+            probes=Probes(),
+            summary={},
+        )
+    )
+    shapes = list(picture.positions)
+    with style():
+        figure, (axes,) = _figure([_shape_height(picture, shapes, count - 1)])
+        _draw_shape_panel(axes, picture, shapes, labels, range(count))
+        lines = wrapped(scenario.title if title is None else title, AXES_TITLE, _WIDTH - _LEFT)
+        axes.set_title("\n".join(lines), pad=10, parse_math=False)
+        make_exactly_equal(figure, axes)
     return figure
 
 

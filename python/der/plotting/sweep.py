@@ -125,9 +125,7 @@ def plot_sweep(sweep: SweepData, columns: Sequence[str] | None = None) -> Figure
 
 def _names(sweep: SweepData, columns: Sequence[str] | None) -> list[str]:
     if columns is None:
-        probes = [c.name for c in sweep.columns if c.kind == "probe" and c.name.endswith(".final")]
-        found = [c.name for c in sweep.columns if c.kind == "found" and _is_number(sweep, c.name)]
-        names = found + probes
+        names = sweep.answers
         if len(names) > _MOST_COLUMNS:
             warn(
                 [
@@ -148,13 +146,9 @@ def _names(sweep: SweepData, columns: Sequence[str] | None) -> list[str]:
         is_empty = sweep.column(name).kind == "run" and not any(
             value is not None for value in sweep.values[name]
         )
-        if is_empty or not _is_number(sweep, name):
+        if is_empty or not sweep.is_number(name):
             raise ValueError(f"the column '{name}' has no numbers to draw")
     return names
-
-
-def _is_number(sweep: SweepData, name: str) -> bool:
-    return sweep[name].dtype.kind in "if"
 
 
 def _label(sweep: SweepData, name: str) -> str:

@@ -62,6 +62,17 @@ class SweepData:
         return [column.name for column in self.columns if column.kind == "parameter"]
 
     @property
+    def answers(self) -> list[str]:
+        """The columns of what was asked for: numbers that the analysis finds, and final values."""
+        found = [c.name for c in self.columns if c.kind == "found" and self.is_number(c.name)]
+        probes = [c.name for c in self.columns if c.kind == "probe" and c.name.endswith(".final")]
+        return found + probes
+
+    def is_number(self, name: str) -> bool:
+        """Return whether a column has numbers, and not texts."""
+        return self[name].dtype.kind in "if"
+
+    @property
     def rows(self) -> list[dict[str, Any]]:
         """The members, each with its values by column."""
         return [

@@ -7,25 +7,27 @@ from collections.abc import Callable, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Scenario, ended_as_asked
 from der.exporting.sweep_tables import SweepFormat, export_sweep
+from der.html import card
 from der.output_paths import folder_path
 from der.sweeps.store import FILE, Store, is_sweep
 from der.sweeps.sweep_data import Rows, SweepData
 from der.sweeps.table import WARNINGS, Column
+from der.tables import data_frame
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
 
-#: Returns these columns of the first so many members.
-RowReader = Callable[[tuple[Column, ...], int], Rows]
+#: A notebook has a picture of no more members than these, and the rows of the first few.
+_DRAWN, _SHOWN = 5000, 8
 
 
 class Sweep(SweepData):
@@ -42,21 +44,26 @@ class Sweep(SweepData):
             table[name] = array
         return table
 
-    def to_pandas(self) -> pd.DataFrame:
-        """Return a table of pandas, with the number of the member as its index.
+    def to_pandas(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
+        """Return a table of pandas, with the parameters as its index.
+
+        Parameters
+        ----------
+        columns
+            Names of columns, or of probes for their final values; without it, the final values of
+            all probes and what the analysis finds. ``attrs["units"]`` has their units.
 
         Raises
         ------
+        KeyError
+            If there is no such column.
         ModuleNotFoundError
             Without pandas.
         """
-        try:
-            import pandas as pd
-        except ModuleNotFoundError as error:
-            raise ModuleNotFoundError(
-                "to_pandas needs the package pandas: pip install 'der[tables]'"
-            ) from error
-        return pd.DataFrame(self.values).set_index("member")
+        names = self.answers if columns is None else columns
+        found = {name.removesuffix(".final"): self[name] for name in names}
+        units = {name: self.column(name).unit for name in found}
+        return data_frame(found, {path: self[path] for path in self.parameters}, units)
 
     def export(self, format: SweepFormat, out: str | os.PathLike[str]) -> list[Path]:
         """Write the table as ``csv``, ``npz`` or ``parquet``, and return the path of the file.
@@ -94,12 +101,31 @@ class Sweep(SweepData):
             parts.append(f"{self.warned} with warnings (column {WARNINGS})")
         return f"{', '.join(parts)}; {self.cpu_seconds:.3g} s of CPU time"
 
+    def _repr_html_(self) -> str:
+        if not 0 < len(self) <= _DRAWN:
+            return card(self.scenario.title, self.summary())
+        names = [*self.parameters, "status", *self.answers]
+        cells = zip(*(self.values[name][:_SHOWN] for name in names), strict=True)
+        rows = [[_text(value) for value in row] for row in cells]
+
+        def draw() -> Figure:
+            figure = self.plot()
+            figure.suptitle("")  # it stands above
+            return figure
+
+        titles = [name.removesuffix(".final") for name in names]
+        return card(self.scenario.title, self.summary(), draw, [[titles, *rows]])
+
     def __repr__(self) -> str:
         """Return title, parameters and size in one line."""
         return (
             f"<der.Sweep of {self.scenario.title!r} over {', '.join(self.parameters)}: "
             f"{self.summary()}>"
         )
+
+
+def _text(value: Any) -> str:
+    return "" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def load_sweep(folder: str | os.PathLike[str]) -> Sweep:

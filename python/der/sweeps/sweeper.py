@@ -20,7 +20,7 @@ from der.errors import DerError, warn
 from der.output_paths import folder_path, make_folder
 from der.parallel import as_they_finish, checked_jobs
 from der.progress import ProgressFunction
-from der.simulation import SceneLike, as_scenario
+from der.scenario import SceneLike, load
 from der.sweeps.chunk import Chunk
 from der.sweeps.design import Design, Member, make_design
 from der.sweeps.design_checks import check_design
@@ -126,7 +126,7 @@ def sweep(
     }.items():
         if not isinstance(value, (bool, np.bool_)):
             raise TypeError(f"{name} must be True or False, got {value!r}")
-    given = as_scenario(scenario)
+    given = load(scenario)
     warn(given.warnings)
     scene = with_default_probes(given)
     design = make_design(vary, zipped=zipped, sample=sample, seed=seed)

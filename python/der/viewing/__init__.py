@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import sys
+import tempfile
 import webbrowser
 from pathlib import Path
 
@@ -12,7 +14,9 @@ from der.run_data import RunData
 _FOLDER = Path(__file__).parent
 
 
-def view(result: RunData, path: str | os.PathLike[str], *, open: bool = False) -> Path:
+def view(
+    result: RunData, path: str | os.PathLike[str] | None = None, *, open: bool | None = None
+) -> Path:
     """Write an interactive view of a result as one HTML file.
 
     Rods are drawn with their sections as they lie, coloured by a quantity along them; a slider and
@@ -24,9 +28,9 @@ def view(result: RunData, path: str | os.PathLike[str], *, open: bool = False) -
     result
         A result of ``der.run`` or ``der.open_run``.
     path
-        File to write.
+        File to write; without it, a temporary one.
     open
-        Whether to show it in a browser.
+        Whether to show it in a browser; unless given, a temporary file on a machine with a screen.
 
     Returns
     -------
@@ -48,7 +52,6 @@ def view(result: RunData, path: str | os.PathLike[str], *, open: bool = False) -
         ) from None
     from der.viewing.payload import make_payload
 
-    path = Path(path)
     text = json.dumps(make_payload(result), separators=(",", ":"), allow_nan=False)
     parts = {
         "STYLE": (_FOLDER / "style.css").read_text(encoding="utf-8"),
@@ -60,7 +63,14 @@ def view(result: RunData, path: str | os.PathLike[str], *, open: bool = False) -
     page = (_FOLDER / "page.html").read_text(encoding="utf-8")
     for name, part in parts.items():
         page = page.replace("{{" + name + "}}", part, 1)
-    path.write_text(page, encoding="utf-8")
-    if open:
-        webbrowser.open(path.resolve().as_uri())
-    return path
+    file = Path(tempfile.mkdtemp(prefix="der-"), "view.html") if path is None else Path(path)
+    file.write_text(page, encoding="utf-8")
+    if open or (open is None and path is None and _has_screen()):
+        webbrowser.open(file.resolve().as_uri())
+    return file
+
+
+def _has_screen() -> bool:
+    """Return whether a browser has a window: one in a terminal would take it away from Python."""
+    screens = ("DISPLAY", "WAYLAND_DISPLAY")
+    return sys.platform in ("darwin", "win32") or any(map(os.environ.get, screens))

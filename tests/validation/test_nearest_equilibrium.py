@@ -120,3 +120,32 @@ def test_buckling_modes_are_kept_in_space(fitted_order, ends, mode, EA):
         errors.append(np.abs(simulation.positions[:, :2] - points).max())
         assert np.abs(simulation.positions[:, 2]).max() < 1e-9
     assert fitted_order(STEPS, errors) > 1.9
+
+
+@pytest.mark.parametrize("EA", [1e3, 1e5, 1e9])
+@pytest.mark.parametrize("mode", [1, 2, 3])
+def test_buckling_modes_under_a_follower_load_are_kept(fitted_order, mode, EA):
+    """The line of thrust joins the pins, so that the force is P/cos(angle) for the dead load P. On
+    the path from the unloaded column is the straight one."""
+    errors = []
+    for n in SIZES:
+        load, points = curve("pinned-pinned", mode, 0.9, EA, n + 1)
+        force = tip_force(-load / np.cos(0.9), 0)
+        force[0]["point_force"]["follower"] = True
+        simulation, report = kept(column("pinned-pinned", n, EA, force), points)
+        assert report.stability == "not_judged"
+        errors.append(np.abs(simulation.positions - points).max())
+    assert fitted_order(STEPS, errors) > 1.9
+
+
+def test_the_scene_says_whether_a_written_shape_is_kept():
+    load, points = curve("pinned-pinned", 2, 1.2, 1e5, 81)
+    scene = column("pinned-pinned", 80, 1e5, tip_force(-load, 0))
+    for choice, word in (("any", "unstable"), ("stable", "stable")):
+        scene["analysis"] = {"static": {"stability": choice}}
+        simulation = der.Simulation(der.Scenario.from_dict(scene))
+        simulation.positions[...] = points
+        assert simulation.equilibrium().stability == word
+        batch = der.Batch(scene, 2)
+        batch.positions[...] = points
+        assert [report.stability for report in batch.equilibrium()] == [word, word]

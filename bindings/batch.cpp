@@ -17,6 +17,7 @@
 #include "der/output/summary.hpp"
 #include "der/scenario/scenario.hpp"
 #include "errors.hpp"
+#include "leave_saddles.hpp"
 #include "settable_names.hpp"
 #include "state.hpp"
 #include "values.hpp"
@@ -177,8 +178,9 @@ py::dict probes(const py::object& self) {
   return by_name;
 }
 
-py::list equilibrium(PyBatch& batch, const Truth& given_leave_saddles) {
-  const bool leave_saddles = given_leave_saddles.value("leave_saddles");
+py::list equilibrium(PyBatch& batch, const std::optional<Truth>& given_leave_saddles) {
+  const bool leave_saddles =
+      leaves_saddles(given_leave_saddles, batch.engine().member(0).scenario());
   const auto reports = batch.unlocked(
       [&](Batch& engine) { return engine.equilibrium(leave_saddles, look_for_signals); });
   py::list all;

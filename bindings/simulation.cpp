@@ -17,6 +17,7 @@
 #include "der/core/error.hpp"
 #include "der/model/momentum.hpp"
 #include "der/output/vertex_strain.hpp"
+#include "leave_saddles.hpp"
 #include "recording.hpp"
 #include "state.hpp"
 
@@ -354,18 +355,21 @@ void bind_actions(PySimulationClass& cls) {
          "NotConvergedError or DivergedError; the state is then that of the last good step.")
       .def(
           "equilibrium",
-          [](const py::object& self, const Truth& leave_saddles) {
-            return self.cast<PySimulation&>().equilibrium(self,
-                                                          leave_saddles.value("leave_saddles"));
+          [](const py::object& self, const std::optional<Truth>& leave_saddles) {
+            auto& simulation = self.cast<PySimulation&>();
+            return simulation.equilibrium(
+                self, leaves_saddles(leave_saddles, simulation.engine().scenario()));
           },
-          py::arg("leave_saddles") = true,
+          py::arg("leave_saddles") = py::none(),
           "Move to the static equilibrium near the present state.\n\n"
           "It is found under the loads at the present time, `extra_force` and the functions of\n"
           "`add_force` (evaluated once, at the start) included. Velocities become zero. An "
           "unstable\n"
-          "equilibrium is left for a stable one, unless `leave_saddles` is false. Ctrl-C "
-          "interrupts\n"
-          "between two iterations, and the state is then as before. Raises NotConvergedError.")
+          "equilibrium is left for a stable one, unless `leave_saddles` is false; if it is None, "
+          "the\n"
+          "scene decides, whose static analysis may say `stability: any`. Ctrl-C interrupts "
+          "between\n"
+          "two iterations, and the state is then as before. Raises NotConvergedError.")
       .def(
           "vibration_modes",
           [](PySimulation& simulation, const WholeNumber& count) {

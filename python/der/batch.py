@@ -149,10 +149,15 @@ class Batch(_core.Batch):
             warn([warning], UnreliableResultWarning)
         return self.failed
 
-    def equilibrium(self, leave_saddles: bool = True) -> list[EquilibriumReport | None]:
+    def equilibrium(self, leave_saddles: bool | None = None) -> list[EquilibriumReport | None]:
         """Move every member that has not failed to the static equilibrium near its state.
 
         As `Simulation.equilibrium`. Members for which none is found have failed then.
+
+        Parameters
+        ----------
+        leave_saddles
+            Whether an unstable equilibrium is left for a stable one; None: as the scene says.
 
         Returns
         -------

@@ -168,7 +168,8 @@ void MemberAssembler<T>::use_predicted_tension_in(const MemberVector<T>& coordin
         return vector;
       };
       const Vec e = edge(coordinates);
-      const T excess = excess_tension<T, Dim>(e, edge(step), EA_[i], rest_length_[i]);
+      const Vec change = edge(step);
+      const T excess = excess_tension<T, Dim>(e - change, change, e, EA_[i], rest_length_[i]);
       const T length = sqrt(T(e.squaredNorm()));
       const Eigen::Matrix<T, Dim, Dim> block = stiffness_across(e, length, T(excess / length));
       const Index* slot = slots[to_size(i)].data();

@@ -10,6 +10,10 @@
 namespace der {
 namespace {
 
+/// A step to a solution near by changes no edge by more than this [rad]: near a critical load a
+/// longer one leads past it.
+constexpr double kNearbyChange = 0.05;
+
 /// Calls use(entry, unit_mass) for each entry of the diagonal.
 template <class Values, class Use>
 void for_each_on_diagonal(const DofMap& dofs, const MatrixLayout& layout, Values& values,
@@ -78,11 +82,12 @@ NewtonReport Newton::solve_nearby(NewtonProblem& problem) {
 
 NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
   const bool takes_full_steps = mode != Mode::LineSearch;
-  const int limit = takes_full_steps ? std::min(kFullStepIterations, options_.max_iterations)
-                                     : options_.max_iterations;
+  const int limit = mode == Mode::FullSteps ? std::min(kFullStepIterations, options_.max_iterations)
+                                            : options_.max_iterations;
   NewtonReport report;
   problem.system(residual_, values_);
   measure(problem, report);
+  if (mode == Mode::Nearby) predict_mixed_point(problem, report);
   while (report.iterations < limit) {
     if (beat_) beat_();
     const double residual_before = report.residual;
@@ -95,11 +100,11 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
     double step = length_;
     bool have_system = false;
     if (takes_full_steps) {
-      move(problem, displacement_, 1.0);
+      move(problem, displacement_, taken_);
       have_system = step > kNearSolution * dofs_.length();
       if (have_system) {
         problem.system(residual_, values_);
-        problem.mixed_point_update(step_, values_);
+        problem.mixed_point_update(step_, taken_, values_);
       } else {
         problem.residual(residual_);
       }
@@ -122,11 +127,22 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
     }
     if (have_system) continue;
     problem.system(residual_, values_);
-    if (takes_full_steps) problem.mixed_point_update(step_, values_);
+    if (takes_full_steps) problem.mixed_point_update(step_, taken_, values_);
   }
   report.worst_dof = worst_dof();
   report.failure = "no convergence in " + std::to_string(options_.max_iterations) + " iterations";
   return report;
+}
+
+/// Puts into the matrix at the guess what a step with nothing in its place predicts. What the guess
+/// has there may be false: the edges between points of a curve are its chords, too short by so
+/// little that no one sees it, and yet pressed far above any buckling load.
+void Newton::predict_mixed_point(NewtonProblem& problem, NewtonReport& report) {
+  problem.remove_mixed_point_part(values_);
+  const bool found = find_direction(problem, Mode::Nearby, report);
+  ++report.iterations;
+  problem.system(residual_, values_);
+  if (found) problem.mixed_point_update(step_, 0.0, values_);
 }
 
 /// Factorises the current matrix, shifted where it is singular or, if it has to be `positive`, not
@@ -152,7 +168,8 @@ bool Newton::factorize(bool positive, NewtonReport& report) {
   return inertia.factorised;
 }
 
-/// Sets the step, as far as the problem admits. False: there is none, or it is not a number.
+/// Sets the step, as far as the problem admits; that to a solution near by as a whole, of which
+/// `taken_` is admitted. False: there is none, or it is not a number.
 bool Newton::find_direction(NewtonProblem& problem, Mode mode, NewtonReport& report) {
   const LowRank* unsymmetric = problem.low_rank();
   const bool downhill = mode == Mode::FullSteps ? unsymmetric == nullptr : mode == Mode::LineSearch;
@@ -173,6 +190,13 @@ bool Newton::find_direction(NewtonProblem& problem, Mode mode, NewtonReport& rep
   length_ = dofs_.largest_motion(step_);
   if (!std::isfinite(length_)) return false;
   const StepBound bound = problem.largest_step(step_);
+  taken_ = 1.0;
+  if (mode == Mode::Nearby) {
+    taken_ = bound.share * std::min(1.0, kNearbyChange / bound.change);
+    change_ = std::min(bound.change, kNearbyChange);
+    length_ *= taken_;
+    return true;
+  }
   change_ = bound.change;
   if (bound.share < 1.0) {
     step_ *= bound.share;

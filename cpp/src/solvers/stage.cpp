@@ -107,8 +107,12 @@ void StageProblem::system(Vector& residual, Vector& values) {
 
 /// The tensions of a discrete gradient are those over the whole step, not those that a step of
 /// Newton's method has put in.
-void StageProblem::mixed_point_update(const Vector& step, Vector& values) {
-  if (stage_->discrete_gradient == nullptr) tension_.use(*here_, step, values);
+void StageProblem::mixed_point_update(const Vector& step, double taken, Vector& values) {
+  if (stage_->discrete_gradient == nullptr) tension_.use(*here_, step, taken, values);
+}
+
+void StageProblem::remove_mixed_point_part(Vector& values) {
+  if (stage_->discrete_gradient == nullptr) tension_.remove(*here_, values);
 }
 
 /// Rigid translation does not count.

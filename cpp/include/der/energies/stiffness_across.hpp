@@ -23,15 +23,15 @@ Matrix3<T> stiffness_across(const Vector3<T>& e, const T& length, const T& stiff
   return stiffness * (Matrix3<T>::Identity() - tangent * tangent.transpose());
 }
 
-/// Tension [N] that a change of an edge's vector predicts to first order, less that `after` it.
+/// Tension [N] that a `change` of an edge's vector from `before` predicts to first order, less that
+/// of the vector `here`.
 template <class T, int Dim>
-T excess_tension(const Eigen::Matrix<T, Dim, 1>& after, const Eigen::Matrix<T, Dim, 1>& change,
-                 const T& EA, const T& rest_length) {
+T excess_tension(const Eigen::Matrix<T, Dim, 1>& before, const Eigen::Matrix<T, Dim, 1>& change,
+                 const Eigen::Matrix<T, Dim, 1>& here, const T& EA, const T& rest_length) {
   using std::sqrt;
-  const Eigen::Matrix<T, Dim, 1> before = after - change;
   const T length = sqrt(T(before.squaredNorm()));
   const T predicted = length + before.dot(change) / length;
-  return EA * (predicted - sqrt(T(after.squaredNorm()))) / rest_length;
+  return EA * (predicted - sqrt(T(here.squaredNorm()))) / rest_length;
 }
 
 }  // namespace der

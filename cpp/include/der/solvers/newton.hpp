@@ -62,6 +62,7 @@ class Newton {
 
   NewtonReport iterate(NewtonProblem& problem, Mode mode);
   bool find_direction(NewtonProblem& problem, Mode mode, NewtonReport& report);
+  void predict_mixed_point(NewtonProblem& problem, NewtonReport& report);
   bool factorize(bool positive, NewtonReport& report);
   double line_search(NewtonProblem& problem);
   void move(NewtonProblem& problem, const Vector& start, double factor);
@@ -78,6 +79,7 @@ class Newton {
   Vector values_;        // of the matrix, shifted where need be
   Vector direction_;     // over the free degrees of freedom
   Vector step_;          // as far along it as the problem admits, over all, zero on held ones
+  double taken_ = 1.0;   // share of the step that is taken
   double length_ = 0.0;  // largest motion in it [m]
   double change_ = 0.0;  // its nonlinearity (StepBound::change)
   Vector displacement_;

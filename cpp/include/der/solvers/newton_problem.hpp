@@ -37,9 +37,11 @@ class NewtonProblem {
   /// The part of the derivative of the last `system` that is not in `values`: the unsymmetric one
   /// of a residual without a potential. Null: there is none.
   [[nodiscard]] virtual const LowRank* low_rank() const { return nullptr; }
-  /// May improve the derivative just evaluated after a full `step` (all degrees of freedom) that
-  /// led here.
-  virtual void mixed_point_update(const Vector& step, Vector& values) = 0;
+  /// May improve the derivative just evaluated after a `step` (all degrees of freedom), of which
+  /// the share `taken` led here.
+  virtual void mixed_point_update(const Vector& step, double taken, Vector& values) = 0;
+  /// Takes out of the derivative just evaluated what `mixed_point_update` would replace.
+  virtual void remove_mixed_point_part(Vector& values) = 0;
 
   /// The largest admissible share of a step (all degrees of freedom, 0 on held ones).
   virtual StepBound largest_step(const Vector& step) = 0;

@@ -17,17 +17,21 @@ class PredictedTension {
  public:
   PredictedTension(const Model& model, const Assembler& assembler);
 
-  /// Puts the tensions predicted by the `step` [m] (all degrees of freedom) that led `here` into a
-  /// matrix just assembled here, in place of the tensions here.
-  void use(const Configuration& here, const Vector& step, Vector& values);
+  /// Puts the tensions predicted by a `step` [m] (all degrees of freedom), of which the share
+  /// `taken` led `here`, into a matrix just assembled here, in place of the tensions here.
+  void use(const Configuration& here, const Vector& step, double taken, Vector& values);
+  /// Takes the stiffness that the tensions give to the edges out of a matrix just assembled `here`.
+  void remove(const Configuration& here, Vector& values);
 
  private:
   template <int Dim>
-  void set_excess(const Configuration& here, const Vector& step);
+  void set_excess(const Configuration& here, const Vector& step, double taken);
+  template <int Dim>
+  void set_release(const Configuration& here);
 
   const Model& model_;
   const Assembler& assembler_;
-  Vector excess_;  // of each edge's predicted tension over the current one [N]
+  Vector excess_;  // of each edge's tension in the matrix over the current one [N]
 };
 
 }  // namespace der

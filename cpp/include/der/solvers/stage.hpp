@@ -60,7 +60,8 @@ class StageProblem final : public NewtonProblem {
   [[nodiscard]] const LowRank* low_rank() const override {
     return circulatory_.empty() || stage_->is_conservative ? nullptr : &circulatory_;
   }
-  void mixed_point_update(const Vector& step, Vector& values) override;
+  void mixed_point_update(const Vector& step, double taken, Vector& values) override;
+  void remove_mixed_point_part(Vector& values) override;
   StepBound largest_step(const Vector& step) override;
   [[nodiscard]] double acting_force() const override { return acting_; }
   [[nodiscard]] double position_rounding() const override;

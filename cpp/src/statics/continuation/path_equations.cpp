@@ -167,7 +167,7 @@ std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& followed
     const double allowed =
         std::max(options_.residual_tolerance * force_scale_, stiffness_.rounding() * model_.size());
     if (length < kLastStep && unbalanced() <= allowed) return guess;
-    tension_.use(here_, over_all_dofs(model_, change.x), stiffness_.values());
+    tension_.use(here_, over_all_dofs(model_, change.x), 1.0, stiffness_.values());
   }
   return std::nullopt;
 }

@@ -9,6 +9,7 @@
 #include "der/energies/circulatory_load.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/model/edge_change.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/rigid_motion.hpp"
 #include "statics/equilibrium/dynamic_relaxation.hpp"
@@ -77,7 +78,7 @@ class EquilibriumSearch {
 
   EquilibriumReport run(State& state) {
     Shape shape{state.positions, state.followed};
-    if (unloaded_) start_without_loads(shape);
+    if (unloaded_ && (leave_saddles_ || !move_nearby(shape))) start_without_loads(shape);
     report_.failed = search(shape);
     if (report_.failed) blame_weak_holding(state, *report_.failed);
     if (report_.failed) blame_free_spin(*report_.failed);
@@ -103,6 +104,18 @@ class EquilibriumSearch {
                 Admissibility(model, loads_.force, state.positions), options.beat),
         stiffness_(model, assembler, solver, options.beat),
         continuation_(model, newton_) {}
+
+  /// For loads without a potential: moves to the equilibrium near the shape, if there is one.
+  bool move_nearby(Shape& shape) {
+    Shape nearby = shape;
+    apply_prescribed_motion(model_, loads_.controls, nearby.positions);
+    if (newton_.balance(loads_, nearby, StaticNewton::LineSearch::Never) ||
+        largest_edge_change(model_, nearby.positions - shape.positions) > kNear) {
+      return false;
+    }
+    shape = std::move(nearby);
+    return true;
+  }
 
   /// For loads without a potential: moves to the equilibrium without loads, from which they are
   /// raised. It is the one that a scene without these loads has, if there are several. Without one,

@@ -58,7 +58,8 @@ class RodFields:
         Each quantity of `fields_of` by name, in its SI unit, shape (frames, nodes), as
         its probes have it; where it jumps at a node, the value after it. Without bending stiffness
         curvature and moment are known at inner nodes and carried on linearly to the ends; 0 on such
-        a rod of two nodes. Signed in the plane, positive counter-clockwise; in space the total one.
+        a rod of two nodes. Signed in a scene of two components, positive counter-clockwise; the
+        total one in a scene of three.
     at_edges
         Those that belong to edges (strain and tension) at the middle of each, shape (frames, edges
         of the rod).

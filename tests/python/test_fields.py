@@ -122,6 +122,19 @@ def test_exports_have_every_quantity_with_a_value_at_all_nodes(swing):
     assert set(spatial) == (set(fields) | of_sections | {"tz"}) - {"slope"}
 
 
+def test_exports_of_a_flat_scene_have_the_quantities_of_space(swing):
+    """A scene of three components has no others, whichever model its values make `auto` take."""
+    swing["rods"][0] |= {"from": [0, 0, 0], "to": [1, 0, 0]}
+    swing["rods"][0]["material"]["poissons_ratio"] = 0.3
+    swing["loads"] = [{"gravity": [0, -9.81, 0]}]
+    swing["output"]["probes"] = {}
+    flat = der.Model(der.Scenario.from_dict(swing))
+    spatial = der.Model(der.Scenario.from_dict(swing | {"model": "spatial"}))
+    assert flat.name == "planar"
+    assert list(fields_of(flat)) == list(fields_of(spatial))
+    check(der.run(with_probes(swing, lambda rod, i: True)))
+
+
 def test_exports_have_the_shape_without_stress_where_actuations_change_it(swing):
     swing["actuation"] = [{"name": "bend", "rod": "arm", "natural_curvature": 1.5}]
     plane = fields_of(der.Model(der.Scenario.from_dict(swing)))

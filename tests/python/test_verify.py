@@ -774,6 +774,31 @@ def test_values_whose_bar_is_rounding_are_exact(value, error_bar, verdict):
     assert found.error_bar == error_bar
 
 
+def test_what_coordinates_leave_of_a_value_is_called_rounding():
+    """A tension of 2.3 N with a bar of 2e-3 N, where EA is 1e11 N, is not exact."""
+    limits = {"rounding": 1e-9, "nothing": 1e-9, "coordinates": 5e-3}
+    for bar, verdict in [(1e-9, "exact"), (2e-3, "rounding"), (6e-3, "oscillating in space")]:
+        found = exact_value(2.3, bar, **limits)
+        assert (found.verdict, found.is_exact) == (verdict, bar < 6e-3)
+        assert found.flagged == (bar == 6e-3)
+
+
+def test_forces_of_a_rod_that_hardly_stretches_are_known_to_rounding(arm):
+    """EA = 1e11 N and a force of 0.3 N along the rod: its strain is 3e-12."""
+    stiffness = {"EA": 1e11, "EI": 1.0, "mass_per_length": 1.0}
+    arm["rods"][0]["cross_section"] = {"stiffness": stiffness}
+    arm["rods"][0].pop("material", None)
+    arm["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": [-0.3, -1.0]}}]
+    at = {"rod": "arm", "at": 0.5}
+    arm["output"]["probes"] = {name: {**at, "quantity": name} for name in ("tension", "moment")}
+    found = der.verify(arm)
+    assert not found.flagged
+    tension = found["tension"]
+    assert tension.verdict == "rounding"
+    assert 1e-3 < tension.error_bar < 0.1
+    assert found["moment"].verdict == "converged"
+
+
 def test_exact_values_count_as_measured():
     assert not exact_value(0.0, 1e-12, "two levels", nothing=1e-9).has_two_levels
     alone = VerifiedValue("p", "final", "m", 0.0, 0.0, None, None, 0.0)
@@ -792,7 +817,12 @@ def test_values_that_are_zero_to_rounding_are_exact_in_every_quantity(arm):
     probes["energy"] = {"quantity": "elastic_energy"}
     arm["output"]["probes"] = probes
     found = der.verify(arm)
-    assert {value.verdict for value in found.values} == {"exact"}
+    verdicts = {value.probe: value.verdict for value in found.values}
+    assert {name for name, verdict in verdicts.items() if verdict != "exact"} <= {
+        "tension",  # EA times the rounding of coordinates
+        "reaction",
+    }
+    assert set(verdicts.values()) <= {"exact", "rounding"}
     assert not found.flagged
     assert f"All {len(probes)} values converge at the expected order" in str(found)
 
@@ -801,7 +831,7 @@ def test_forces_far_below_the_axial_stiffness_are_not_taken_for_zero(arm):
     """EA is 1e7 N, and 1e-9 of it is much of the force: that of bending is what counts."""
     limits = exact_below(der.run(arm), "N", 1.0)
     assert limits.nothing == pytest.approx(1e-9)  # EI / L^2 is 1 N
-    assert limits.rounding < 1e-5
+    assert max(limits.rounding, limits.coordinates) < 1e-5
 
 
 def test_positions_far_from_the_origin_are_not_exact_for_it(arm):

@@ -225,7 +225,8 @@ def test_along_a_flat_rod():
     assert result.model.name == "planar"
     _, curvature = result.along("rod", "curvature")
     _, toward_second = result.along("rod", "curvature_2")
-    assert np.array_equal(toward_second, curvature)
+    assert np.array_equal(np.abs(toward_second), curvature)
+    assert (toward_second > 0).any()
     s, z = result.along("rod", "z")
     assert len(s) == 21
     assert not z.any()
@@ -274,6 +275,151 @@ def test_a_sweep_through_a_flat_scene():
         assert values[name][1] == pytest.approx(values[name].mean(), rel=1e-6)
     assert values["about_z"][1] < 0.0
     assert values["k2"][1] < 0.0  # director 1 is along z, so that 2 is along -y
+
+
+def bent_to_both_sides():
+    """A cantilever with a moment that changes its sign; loads.0 pushes."""
+    scene = straight_in_space(20, supports=[{**START, "clamp": True}])
+    pull, push = scene["loads"][:2]
+    push["point_force"] |= {"at": "middle", "force": [0, -2.5, 0]}
+    return {**scene, "loads": [push, pull]}
+
+
+def driven_arc():
+    grow = {"name": "grow", "rod": "rod", "from": 0.5, "elongation": 0.02}
+    bend = {"name": "bend", "rod": "rod", "to": 0.6, "natural_curvature": [0, 2.5]}
+    return arc(20, *DIRECTORS["second"], actuation=[bend, grow])
+
+
+def moving_arc():
+    time = {"duration": 0.1, "step": 0.002, "integrator": "implicit_midpoint"}
+    scene = arc(20, *DIRECTORS["minus first"], time=time)
+    del scene["analysis"], scene["supports"][0]["prescribe"]
+    return {**scene, "loads": scene["loads"][:1]}
+
+
+def ring():
+    angles = 2 * np.pi * np.arange(24) / 24
+    points = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    pull = {"point_force": {"rod": "rod", "at": "middle", "force": [0.3, 0.2, 0]}}
+    scene = arc(4, *DIRECTORS["second"], supports=[{**START, "clamp": True}], loads=[pull])
+    scene["rods"][0] |= {"points": points.tolist(), "closed": True}
+    scene["rods"][0]["cross_section"]["director"] = [0, 0, 1]
+    return scene
+
+
+def probes_of_everything(scene):
+    """Of every quantity that there is, whether the scene has it or not."""
+    probes = {}
+    for quantity in der.quantities():
+        name, of = quantity.name, {"quantity": quantity.name}
+        if quantity.kind == "energy":
+            probes[name] = of
+        elif quantity.kind == "support":
+            probes |= {f"{name}-{i}": {**of, "support": i} for i in range(len(scene["supports"]))}
+        elif quantity.kind == "actuation":
+            for one in scene.get("actuation", []):
+                probes[f"{name}-{one['name']}"] = {**of, "actuation": one["name"]}
+        elif quantity.kind == "ring":
+            probes[name] = {**of, "rod": "rod"}
+        else:
+            probes |= probes_along([name])
+    return probes
+
+
+def answered(scene, probes):
+    """Those probes that are not refused."""
+    try:
+        der.Scenario.from_dict({**scene, "output": {**scene.get("output", {}), "probes": probes}})
+    except der.SceneError as error:
+        refused = {d.path.split(".")[2] for d in error.diagnostics}
+        return answered(scene, {p: v for p, v in probes.items() if p not in refused})
+    return probes
+
+
+@pytest.mark.parametrize("flat", [bent_to_both_sides, driven_arc, moving_arc, ring])
+def test_no_quantity_jumps_in_a_sweep_through_a_flat_scene(flat):
+    """The components of a scene's vectors tell what a probe means, not the model for its values."""
+    readings, models = [], []
+    for push in (-1e-5, 0.0, 1e-5):
+        scene = flat()
+        scene["loads"][0]["point_force"]["force"][2] = push
+        scene["output"] = {"every": 0.1} if "time" in scene else {}
+        found, model = final(scene, answered(scene, probes_of_everything(scene)), "auto")
+        readings.append(found)
+        models.append(model)
+    below, here, above = readings
+    assert models[1] == "planar"
+    assert models[0] == models[2] != "planar"
+    assert set(here) == set(below) == set(above)
+    assert len(here) > 100
+    for name, value in here.items():
+        between = 0.5 * (below[name] + above[name])
+        # Smaller than what 1e-5 N does and the error of the mesh, larger than no change of sign.
+        assert value == pytest.approx(between, abs=2e-4 * max(1.0, abs(between))), name
+    assert here["curvature-1"] > 0.01
+
+
+@pytest.mark.parametrize(
+    ("quantity", "instead"),
+    [("slope", "'tx', 'ty' and 'tz'"), ("natural_curvature", "'natural_curvature_1'")],
+)
+def test_a_flat_scene_lacks_what_its_neighbours_lack(quantity, instead):
+    """Values of a plane alone have to be asked for with the model."""
+    scene = bent_to_both_sides()
+    probes = {"p": {**END, "quantity": quantity}}
+    lacks = f"a scene of three components has no '{quantity}', flat as it is: .*take {instead}"
+    with pytest.raises(der.SceneError, match=lacks + ".*; or write 'model: planar'"):
+        final(scene, probes, "auto")
+    assert final(scene, probes, "planar")[1] == "planar"
+    result = der.run(der.Scenario.from_dict(scene))
+    assert result.model.name == "planar"
+    with pytest.raises(der.DerError, match=lacks):
+        result.along("rod", quantity)
+
+
+@pytest.mark.parametrize("sections", [{"EI": 1.0}, {"EI1": 2.7, "EI2": 1.0}])
+def test_modes_of_a_flat_scene_leave_its_plane(sections):
+    """As those of its neighbours. Cantilever: omega = beta^2 sqrt(EI/mu) to either side."""
+    beta = np.array([1.875104068711961, 4.694091132974175, 7.854757438237613])
+    stiff = np.sqrt(list(sections.values()) * 2)[:2]
+    section = {"EA": 1e8, "GJ": 1e3, "mass_per_length": 1.0, **sections}
+    rod = {"name": "rod", "nodes": 41, "from": [0, 0, 0], "to": [1, 0, 0]}
+    scene = {
+        "rods": [{**rod, "cross_section": {"stiffness": section}}],
+        "supports": [{**START, "clamp": True}],
+        "analysis": {"modes": {"count": 6}},
+    }
+
+    def frequencies(scene):
+        result = der.run(der.Scenario.from_dict(scene))
+        return 2 * np.pi * np.array(result.summary["frequencies_hz"]), result.model
+
+    found, model = frequencies(scene)
+    assert found == pytest.approx(np.sort(np.outer(beta**2, stiff).ravel()), rel=2e-3)
+    assert "modes of a scene of three components are those in space" in model.reason
+    # Seen from next to the plane.
+    scene["loads"] = [{"point_force": {**END, "force": [0, 0, 1e-9]}}]
+    beside, other = frequencies(scene)
+    assert other.name == model.name == ("spatial_bend" if "EI" in sections else "spatial")
+    assert beside == pytest.approx(found, rel=1e-6)
+    del scene["loads"]
+    in_plane, model = frequencies({**scene, "model": "planar"})
+    assert model.name == "planar"
+    assert in_plane[:3] == pytest.approx(beta**2 * stiff[-1], rel=2e-3)
+
+
+def test_modes_of_a_flat_ring_twist_it():
+    """Though it is straight without stress, and round."""
+    scene = ring()
+    scene["rods"][0]["natural_curvature"] = [0, 0]
+    section = {"EA": 1e3, "EI": 1.0, "GJ": 0.7, "mass_per_length": 1.0}
+    scene["rods"][0]["cross_section"] = {"stiffness": section}
+    scene["supports"] = [{**START, "clamp": "tangent"}]
+    scene |= {"loads": [], "analysis": "modes"}
+    assert der.Model(der.Scenario.from_dict(scene)).name == "spatial"
+    with pytest.raises(der.SceneError, match="its writhe twists it"):
+        der.Scenario.from_dict({**scene, "model": "spatial_bend"})
 
 
 def test_error_bars_and_arrays_of_a_flat_scene():

@@ -1,8 +1,12 @@
 #include "output/force_across.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "der/core/index.hpp"
+#include "output/around_ring.hpp"
+#include "output/bend_field.hpp"
 
 namespace der {
 namespace {
@@ -51,6 +55,14 @@ bool bears_forces_across(const RodMesh& rod, const Model& model) {
 
 ForceAcross::ForceAcross(const RodMesh& rod, const Model& model) {
   const auto field = [&](const char* quantity) { return make_rod_field(quantity, rod, model); };
+  if (model.dimension == 2) {  // with a sign, whatever probes of the scene have
+    const auto around = [&](std::unique_ptr<RodField> own) {
+      return rod.closed ? around_ring(std::move(own), rod) : std::move(own);
+    };
+    bends_.push_back(
+        {around(make_curvature_field(rod, model)), around(make_moment_field(rod, model))});
+    return;
+  }
   if (!model.has_sections()) {
     bends_.push_back({field("curvature"), field("moment")});
     return;

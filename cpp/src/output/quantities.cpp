@@ -39,6 +39,16 @@ Quantity field(std::string name, std::string unit, QuantityKind kind, std::strin
   return {std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, false};
 }
 
+/// A quantity that has a sign in a plane. The scene decides, not the model that is chosen for it.
+template <RodFieldMaker make>
+Quantity bending(std::string name, std::string unit, std::string meaning) {
+  const RodFieldMaker maker = [](const RodMesh& rod, const Model& model) {
+    const bool is_flat_scene_in_space = model.dimension == 2 && model.stands_for_space;
+    return is_flat_scene_in_space ? magnitude(make(rod, model), rod) : make(rod, model);
+  };
+  return field(std::move(name), std::move(unit), QuantityKind::Bend, std::move(meaning), maker);
+}
+
 /// `advice` tells what to take in other models.
 Quantity in(QuantityScope scope, Quantity quantity, std::string advice = {}) {
   quantity.scope = scope;
@@ -104,11 +114,12 @@ std::vector<Quantity> quantities_along_rods() {
       tangent<0>("tx", "x component of the unit tangent, toward the end of the rod"),
       tangent<1>("ty", "y component of the unit tangent"),
       tangent<2>("tz", "z component of the unit tangent, in space"),
-      field("curvature", "1/m", Kind::Bend, "turning angle per length; its magnitude in space",
-            make_curvature_field),
-      field("moment", "N m", Kind::Bend,
-            "bending moment, positive where it bends counter-clockwise; its magnitude in space",
-            make_moment_field),
+      bending<make_curvature_field>("curvature", "1/m",
+                                    "turning angle per length, positive counter-clockwise; in a "
+                                    "scene of three components its magnitude"),
+      bending<make_moment_field>("moment", "N m",
+                                 "bending moment, positive where it bends counter-clockwise; in a "
+                                 "scene of three components its magnitude"),
       section<SectionQuantity::Curvature1>("curvature_1", "1/m",
                                            "curvature towards the first director"),
       section<SectionQuantity::Curvature2>("curvature_2", "1/m",
@@ -297,14 +308,20 @@ const std::vector<Quantity>& quantities() {
   return table;
 }
 
-bool is_available(const Quantity& quantity, const Model& model) {
+bool is_own(const Quantity& quantity, const Model& model) {
   return is_available_in(model.dimension, model.has_sections(), quantity);
+}
+
+bool is_available(const Quantity& quantity, const Model& model) {
+  if (model.dimension == 2 && model.stands_for_space) return !is_of_plane(quantity);
+  return is_own(quantity, model);
 }
 
 bool is_answered(const Quantity& quantity, const Model& model) {
   return is_available(quantity, model) || (model.stands_for_space && is_of_space(quantity));
 }
 
+bool is_of_plane(const Quantity& quantity) { return quantity.scope == QuantityScope::Planar; }
 bool is_of_space(const Quantity& quantity) { return quantity.scope > QuantityScope::Planar; }
 
 bool is_available_in(int dimension, bool has_sections, const Quantity& quantity) {
@@ -324,6 +341,13 @@ bool is_available_in(int dimension, bool has_sections, const Quantity& quantity)
 std::string lacks(std::string_view model, const Quantity& quantity) {
   const std::string advice = quantity.advice.empty() ? advice_on(quantity.scope) : quantity.advice;
   return fmt::format("the model '{}' has no '{}': {}", model, quantity.name, advice);
+}
+
+std::string lacks_in_flat_scene(const Quantity& quantity) {
+  return fmt::format(
+      "a scene of three components has no '{}', flat as it is: {}; or write 'model: "
+      "planar'",
+      quantity.name, quantity.advice);
 }
 
 std::string lacks_held_section(std::string_view rod, std::string_view quantity) {

@@ -32,7 +32,8 @@ SampleWeights linear_weights(const std::vector<double>& arc, double s) {
 }
 
 Error not_available(const Quantity& quantity, const Model& model) {
-  return {"model_error", lacks(model.name, quantity)};
+  const bool is_flat = model.dimension == 2 && model.stands_for_space && is_of_plane(quantity);
+  return {"model_error", is_flat ? lacks_in_flat_scene(quantity) : lacks(model.name, quantity)};
 }
 
 void RodField::sample_all(const Model& model, const State& state, double* values) const {
@@ -53,8 +54,8 @@ std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodM
     if (!is_answered(*row, model)) {
       throw not_available(*row, model);
     }
-    auto field = is_available(*row, model) ? row->make_field(rod, model)
-                                           : row->make_field_in_smaller(rod, model);
+    auto field =
+        is_own(*row, model) ? row->make_field(rod, model) : row->make_field_in_smaller(rod, model);
     return rod.closed ? around_ring(std::move(field), rod) : std::move(field);
   }
   throw Error("model_error", fmt::format("'{}' is not a quantity along a rod; these are: {}",

@@ -1,6 +1,9 @@
 #include "output/smaller_model.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "output/bend_field.hpp"
 
@@ -33,6 +36,52 @@ class ScaledField : public RodField {
 
   double factor_;
   std::unique_ptr<RodField> field_;
+};
+
+class MagnitudeField : public RodField {
+ public:
+  MagnitudeField(std::unique_ptr<RodField> field, const RodMesh& rod)
+      : RodField(field->arc_length()),
+        field_(std::move(field)),
+        same_place_(rod.same_place()),
+        ring_length_(rod.closed ? rod.rest_length() : 0.0) {}
+
+  [[nodiscard]] double sample(std::size_t i, const Model& model,
+                              const State& state) const override {
+    return std::abs(field_->sample(i, model, state));
+  }
+  void sample_all(const Model& model, const State& state, double* values) const override {
+    field_->sample_all(model, state, values);
+    for (std::size_t i = 0; i < arc_length().size(); ++i) values[i] = std::abs(values[i]);
+  }
+  [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
+                                   const State& state) const override {
+    return std::abs(field_->interpolate(weights, model, state));
+  }
+  /// It is 0 where the sign changes, but for jumps: there it does not pass what lies between.
+  [[nodiscard]] double dip(const Model& model, const State& state) const override {
+    const std::vector<double>& arc = arc_length();
+    if (arc.empty()) return RodField::dip(model, state);
+    const double first = field_->sample(0, model, state);
+    double before = first;
+    double s_before = arc.front();
+    bool passes_zero = false;
+    const auto go_on_to = [&](double s, double here) {
+      passes_zero = passes_zero || (before * here < 0.0 && s > s_before + same_place_);
+      before = here;
+      s_before = s;
+    };
+    for (std::size_t i = 1; i < arc.size(); ++i) go_on_to(arc[i], field_->sample(i, model, state));
+    if (ring_length_ > 0.0) go_on_to(arc.front() + ring_length_, first);
+    return passes_zero ? 0.0 : RodField::dip(model, state);
+  }
+  [[nodiscard]] bool continuous() const override { return field_->continuous(); }
+  [[nodiscard]] bool smooth_at(std::size_t i) const override { return field_->smooth_at(i); }
+
+ private:
+  std::unique_ptr<RodField> field_;
+  double same_place_;   // [m]
+  double ring_length_;  // [m]; 0: the rod is open
 };
 
 /// Component toward a director of a curvature in the plane.
@@ -68,6 +117,10 @@ RodFieldMaker planar_maker(SectionQuantity quantity) {
 
 std::unique_ptr<RodField> scaled(double factor, std::unique_ptr<RodField> field) {
   return std::make_unique<ScaledField>(factor, std::move(field));
+}
+
+std::unique_ptr<RodField> magnitude(std::unique_ptr<RodField> field, const RodMesh& rod) {
+  return std::make_unique<MagnitudeField>(std::move(field), rod);
 }
 
 std::unique_ptr<RodField> make_section_field_in_smaller(SectionQuantity quantity,

@@ -54,18 +54,20 @@ bool holds_section(const Probe& probe, const SceneText& scene) {
 }
 
 /// A probe changes no model. What the chosen one does not have has to be asked for, but where it
-/// was chosen for a scene in space: the values of the scene alone made it the smaller one.
+/// was chosen for a scene in space: the values of the scene alone made it the smaller one, and they
+/// do not change what its probes mean.
 void check_quantities(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics) {
   for (const Probe& probe : scene.output.probes) {
     const Quantity& quantity = *find_quantity(probe.quantity);
     const int dimension = kind == ModelChoice::Planar ? 2 : 3;
     const Path path{"output", "probes", probe.name, "quantity"};
-    const bool has_it = is_available_in(dimension, kind == ModelChoice::Spatial, quantity);
-    const bool stands_for_space =
-        scene.model == ModelChoice::Auto && diagnostics.dimension() == 3 && is_of_space(quantity);
-    if (!has_it && !stands_for_space) {
+    const bool is_of_model = is_available_in(dimension, kind == ModelChoice::Spatial, quantity);
+    const bool stands_for_space = scene.model == ModelChoice::Auto && scene.in_space;
+    if (dimension == 2 && stands_for_space && is_of_plane(quantity)) {
+      diagnostics.add(path, lacks_in_flat_scene(quantity));
+    } else if (!is_of_model && !(stands_for_space && is_of_space(quantity))) {
       diagnostics.add(path, lacks(name_of(kind), quantity));
-    } else if ((dimension == 3 || !has_it) && is_of_bending(quantity.kind) &&
+    } else if ((dimension == 3 || stands_for_space) && is_of_bending(quantity.kind) &&
                is_of_cable(probe, scene)) {
       diagnostics.add(path, fmt::format("rod '{}' has no stiffness against bending, EI: it has no "
                                         "'{}' in space",

@@ -149,6 +149,7 @@ bool does_not_bend(const Rod& rod) {
 
 void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   if (diagnostics.vectors_differ()) return;
+  scene.in_space = diagnostics.dimension() == 3;
   CheckContext context{scene, diagnostics};
   if (!fit_into_memory(context)) return;
   check_rods(context);
@@ -176,7 +177,6 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   if (std::string problem = unit_problem(scene); !problem.empty()) {
     scene.warnings.push_back(std::move(problem));
   }
-  scene.in_space = diagnostics.dimension() == 3;
   conform(scene, model.kind);
 }
 

@@ -176,16 +176,23 @@ bool read_numbers(const Shape& shape, const Place& place, Diagnostics& diagnosti
   return fine;
 }
 
-/// Says what to write if two items of a list in one line are the halves of a number with a decimal
-/// comma, as a clause; empty if none seem to be. No space follows that comma.
-std::string decimal_comma_in(const Sequence& items) {
+/// Says what to write if items of a list in one line are the parts of a number with commas, as a
+/// clause; empty if none seem to be. No space follows such a comma.
+std::string split_number_in(const Sequence& items) {
   for (std::size_t i = 0; i + 1 < items.size(); ++i) {
-    const auto* whole = std::get_if<Plain>(&items[i].content);
-    const auto* fraction = std::get_if<Plain>(&items[i + 1].content);
-    if (!whole || !fraction || items[i].mark.line != items[i + 1].mark.line) continue;
-    const auto end = items[i].mark.column + static_cast<int>(whole->text.size());
-    if (items[i + 1].mark.column != end + 1) continue;
-    std::string problem = decimal_comma_problem(whole->text + "," + fraction->text);
+    std::string number;
+    std::string problem;
+    int next = items[i].mark.column;
+    for (std::size_t k = i; k < std::min(items.size(), i + kMostParts); ++k) {
+      const auto* part = std::get_if<Plain>(&items[k].content);
+      if (!part || items[k].mark.line != items[i].mark.line || items[k].mark.column != next) break;
+      number += (k == i ? "" : ",") + part->text;
+      next = items[k].mark.column + static_cast<int>(part->text.size()) + 1;
+      if (k == i) continue;
+      if (std::string longer = separator_problem(number); !longer.empty()) {
+        problem = std::move(longer);
+      }
+    }
     if (!problem.empty()) return problem;
   }
   return {};
@@ -205,10 +212,10 @@ bool read_vector(const Shape& shape, const Place& place, Diagnostics& diagnostic
   const std::size_t count = items->size();
   if (count > 3 || count < static_cast<std::size_t>(shape.min_items)) {
     report_expected(expected(shape), place, diagnostics,
-                    count == 1 ? "is a comma missing?" : decimal_comma_in(*items));
+                    count == 1 ? "is a comma missing?" : split_number_in(*items));
     return false;
   }
-  diagnostics.note_vector(place, decimal_comma_in);
+  diagnostics.note_vector(place, split_number_in);
   out.resize(count);
   return read_numbers(shape, place, diagnostics, out);
 }

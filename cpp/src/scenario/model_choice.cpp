@@ -27,6 +27,10 @@ std::string first_of(const std::vector<Part>& parts, About&& about) {
   return {};
 }
 
+bool asks_for_modes(const Scene& scene) {
+  return std::holds_alternative<ModesAnalysis>(scene.analysis);
+}
+
 bool acts_along_z(const Components& value) { return along_z(value) != 0.0; }
 bool acts_along_z(const VectorSeries& series) {
   return std::any_of(series.values.begin(), series.values.end(),
@@ -201,7 +205,7 @@ std::string may_twist(const Rod& rod, const Scene& scene) {
     return fmt::format("rod '{}' is curved without stress", rod.name);
   }
   const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
-  const bool moves = scene.is_dynamic() || std::holds_alternative<ModesAnalysis>(scene.analysis);
+  const bool moves = scene.is_dynamic() || asks_for_modes(scene);
   if (moves && direct && direct->rotary_inertia.value_or(0.0) > 0.0) {
     return fmt::format("the sections of rod '{}' have a rotary inertia", rod.name);
   }
@@ -303,12 +307,20 @@ std::string why_not_planar(const Scene& scene) {
        why_it_twists(scene)});
 }
 
+/// What stands against `planar` where nobody asked for it. Modes leave the plane in which a
+/// structure rests, so that those of a flat scene are those of its neighbours.
+std::string why_not_planar_by_itself(const Scene& scene) {
+  if (std::string clause = why_not_planar(scene); !clause.empty()) return clause;
+  if (!asks_for_modes(scene) || !scene.in_space) return {};
+  return "vibration modes of a scene of three components are those in space";
+}
+
 /// A ring has no end to let go of the twist that its writhe makes, and writhe needs space.
 std::string writhes(const Scene& scene) {
   const auto ring = std::find_if(scene.rods.begin(), scene.rods.end(),
                                  [](const Rod& rod) { return rod.closed && !is_cable(rod); });
   if (ring == scene.rods.end()) return {};
-  if (why_not_planar(scene).empty()) return {};
+  if (why_not_planar(scene).empty() && !asks_for_modes(scene)) return {};
   return fmt::format("rod '{}' is closed, so that its writhe twists it", ring->name);
 }
 
@@ -347,7 +359,7 @@ std::string why_not(ModelChoice kind, const Scene& scene) {
 
 ChosenModel choose_model(const Scene& scene) {
   if (scene.model != ModelChoice::Auto) return {scene.model, "asked for by the scene"};
-  const std::string planar = why_not_planar(scene);
+  const std::string planar = why_not_planar_by_itself(scene);
   if (planar.empty()) {
     return {ModelChoice::Planar, "every position, force and support lies in the x-y plane"};
   }

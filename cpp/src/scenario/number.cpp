@@ -85,15 +85,52 @@ std::string without(std::string_view text, char unwanted) {
   return result;
 }
 
-/// `1234567` of `1,234,567`; empty where commas do not part thousands.
+/// With a plain blank for the narrow and for the no-break ones, which part thousands, too.
+std::string with_plain_blanks(std::string_view text) {
+  std::string result(text);
+  for (const std::string_view blank : {"\u00a0", "\u202f", "\u2009"}) {
+    for (std::size_t at = 0; (at = result.find(blank, at)) != std::string::npos;) {
+      result.replace(at, blank.size(), " ");
+    }
+  }
+  return result;
+}
+
+/// `1234567.5` of `1,234,567.5`, `1.234.567,5` and `1 234 567.5`: groups of three digits after the
+/// first, all parted alike. Empty where none are.
 std::string joined_thousands(std::string_view text) {
-  std::size_t i = skip_digits(text, skip_sign(text, 0));
-  if (i == text.size() || text[skip_sign(text, 0)] == '0') return {};
-  while (i < text.size()) {
-    if (text[i] != ',' || skip_digits(text, i + 1) != i + 4) return {};
+  const std::size_t start = skip_sign(text, 0);
+  std::size_t i = skip_digits(text, start);
+  if (i == start || i > start + 3 || i == text.size() || text[start] == '0') return {};
+  const char separator = text[i];
+  if (separator != ',' && separator != '.' && separator != ' ') return {};
+  std::string joined(text.substr(0, i));
+  while (i < text.size() && text[i] == separator && skip_digits(text, i + 1) == i + 4) {
+    joined += text.substr(i + 1, 3);
     i += 4;
   }
-  return without(text, ',');
+  if (i < text.size() && separator != text[i] && (text[i] == '.' || text[i] == ',')) {
+    joined += '.';
+    ++i;
+  }
+  joined += text.substr(i);
+  return scan(joined).length == joined.size() ? joined : std::string();
+}
+
+std::string thousands_clause(std::string_view joined) {
+  return fmt::format("thousands have no separator: write {}", joined);
+}
+
+/// `1.5` of `1,5`; empty where no decimal comma is.
+std::string pointed_decimal(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || comma == 0 || !is_digit(text[comma - 1])) return {};
+  std::string pointed(text);
+  pointed[comma] = '.';
+  const bool is_whole = scan(text.substr(0, comma)).length == comma;
+  const bool has_fraction = comma + 1 < text.size() && is_digit(text[comma + 1]);
+  if (!is_whole || !has_fraction || scan(pointed).length != text.size()) return {};
+  return pointed;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -181,9 +218,8 @@ std::string diagnose(std::string_view text, const Decimal& start, std::string_vi
   }
   if (start.length == 0) return {};
   const std::string_view rest = trimmed(text.substr(start.length));
+  if (std::string problem = separator_problem(text); !problem.empty()) return problem;
   if (rest.front() == ',') {
-    if (std::string problem = decimal_comma_problem(text); !problem.empty()) return problem;
-    if (std::string joined = joined_thousands(text); !joined.empty()) return "write " + joined;
     return "decimals have a point, thousands no separator, and a list stands in brackets";
   }
   if (rest.front() == '*' || rest.front() == '/' || rest.front() == '^') {
@@ -218,10 +254,9 @@ Reading<double> read_real(std::string_view text, std::string_view unit) {
 
 Reading<std::int64_t> read_whole(std::string_view text) {
   const Decimal number = scan(text);
-  if (std::string joined = joined_thousands(text); !joined.empty()) {
-    return {std::nullopt, "write " + joined};
-  }
   if (text.empty() || number.length != text.size()) {
+    const std::string joined = joined_thousands(with_plain_blanks(text));
+    if (!joined.empty() && scan(joined).whole) return {std::nullopt, thousands_clause(joined)};
     return {std::nullopt, diagnose(text, number, {})};
   }
   if (number.leading_zero) return {std::nullopt, leading_zero_problem(text)};
@@ -237,19 +272,11 @@ Reading<std::int64_t> read_whole(std::string_view text) {
   return {std::nullopt, {}};
 }
 
-std::string decimal_comma_problem(std::string_view text) {
-  const std::size_t comma = text.find(',');
-  if (comma == std::string_view::npos || comma == 0 || !is_digit(text[comma - 1])) return {};
-  std::string pointed(text);
-  pointed[comma] = '.';
-  const Decimal number = scan(pointed);
-  const bool is_whole = scan(text.substr(0, comma)).length == comma;
-  if (!is_whole || number.length != text.size() || comma + 1 == text.size() ||
-      !is_digit(text[comma + 1])) {
-    return {};
-  }
+std::string separator_problem(std::string_view text) {
+  const std::string thousands = joined_thousands(with_plain_blanks(text));
+  const std::string pointed = pointed_decimal(text);
+  if (pointed.empty()) return thousands.empty() ? thousands : thousands_clause(thousands);
   const std::string clause = "a decimal has a point, not a comma: write " + pointed;
-  const std::string thousands = joined_thousands(text);
   if (thousands.empty()) return clause;
   return fmt::format("{}, or {} if the comma parts thousands", clause, thousands);
 }

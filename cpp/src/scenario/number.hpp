@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -24,9 +25,11 @@ Reading<double> read_real(std::string_view text, std::string_view unit);
 /// Reads a whole number; `2.0` and `1e2` are refused with a hint.
 Reading<std::int64_t> read_whole(std::string_view text);
 
-/// Says what to write in place of a number with a decimal comma, as a clause; empty for another
-/// text.
-std::string decimal_comma_problem(std::string_view text);
+/// Says what to write in place of a number with a decimal comma (`1,5`) or parted thousands
+/// (`1,000,000`, `1.000.000`, `1 000`, `1.000,5`), as a clause; empty for another text.
+std::string separator_problem(std::string_view text);
+/// Commas part no more pieces than these of a number that is meant.
+inline constexpr std::size_t kMostParts = 8;
 
 /// Whether a text would be read as a number, or only just not (`010`, `.inf`).
 bool looks_like_number(std::string_view text);

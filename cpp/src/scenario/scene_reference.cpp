@@ -54,10 +54,15 @@ Nothing is rounded to the plane: a node 1e-6 m off it is part of the scene, as a
 of the plane is. A larger model than needed may be asked for; a smaller one is refused, with the
 reason. The integrator `energy_momentum` is for the planar model only.
 
-A probe chooses no model. Where `auto` takes a smaller one for a scene of three components, the
-quantities of space have the values that they have there: `z` and `torque` of a rod in the plane are
-0, `moment_1` is the part of its moment towards director 1. So a sweep may pass a scene that is flat.
-A rod of the model `spatial_bend` has components towards directors where a clamp holds its section.
+A probe chooses no model, and the model that `auto` takes changes no probe: the components of the
+scene's vectors tell what a quantity means. In a scene of three components `curvature` and `moment` are
+magnitudes, `z` and `torque` of a rod in the plane are 0, `moment_1` is the part of its moment towards
+director 1, and quantities of the plane alone, such as `slope`, are refused. So a sweep may pass a
+scene that is flat. `model: planar` has the quantities of the plane. A rod of the model `spatial_bend`
+has components towards directors where a clamp holds its section.
+
+Vibration modes of a scene of three components are those in space; `model: planar` has those in the
+plane.
 
 The section of a rod has two directors: director 1 is the direction of its width, director 2 that of
 its height, t x d1 with the tangent t in the direction of growing arc length. `EI1` and `k1` belong to

@@ -35,8 +35,8 @@ class KeyReader {
         report(entry, fmt::format("'{}' has no value: give it one, or remove the key", entry.key));
         continue;
       }
-      if (i + 1 < entries.size() && is_split_by_comma(entry, entries[i + 1])) {
-        ++i;
+      if (const std::size_t parts = parts_of_number(entries, i); parts > 1) {
+        i += parts - 1;
         continue;
       }
       read(field, place_.at(entry));
@@ -72,16 +72,31 @@ class KeyReader {
   }
 
  private:
-  /// Reports and returns true where two entries are one number: in brackets a comma ends a value,
-  /// and of `{radius: 0,006}` the key `006` remains, without a value.
-  bool is_split_by_comma(const Entry& entry, const Entry& next) {
-    const auto* written = std::get_if<Plain>(&entry.value.content);
-    if (!written || !next.value.is_null() || table_.find(next.key) >= 0) return false;
-    const std::string number = written->text + "," + next.key;
-    const std::string problem = decimal_comma_problem(number);
-    if (problem.empty()) return false;
-    report(entry, fmt::format("'{}' is two values, parted by a comma: {}", number, problem));
-    return true;
+  /// Number of entries from one on that are one number, which is reported; 1: it is none. In
+  /// brackets a comma ends a value, and of `{radius: 0,006}` the key `006` remains, without a
+  /// value.
+  std::size_t parts_of_number(const std::vector<Entry>& entries, std::size_t first) {
+    const auto* written = std::get_if<Plain>(&entries[first].value.content);
+    if (!written) return 1;
+    std::size_t parts = 1;
+    std::string number = written->text;
+    std::string split;
+    std::string problem;
+    for (std::size_t i = first + 1; i < std::min(entries.size(), first + kMostParts); ++i) {
+      if (!entries[i].value.is_null() || table_.find(entries[i].key) >= 0) break;
+      number += "," + entries[i].key;
+      if (std::string longer = separator_problem(number); !longer.empty()) {
+        parts = i + 1 - first;
+        split = number;
+        problem = std::move(longer);
+      }
+    }
+    if (parts > 1) {
+      const std::string values = parts == 2 ? "two values, parted by a comma"
+                                            : fmt::format("{} values, parted by commas", parts);
+      report(entries[first], fmt::format("'{}' is {}: {}", split, values, problem));
+    }
+    return parts;
   }
 
   /// "a rod"

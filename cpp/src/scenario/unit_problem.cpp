@@ -31,6 +31,13 @@ constexpr double kStiffestFoam = 1e5;  // [Pa] at 1 kg/m^3
 constexpr double kHeavy = 2e3;  // [kg/m^3]
 constexpr double kFewGPa = 2e3;
 
+/// Metals, stones and glass, in which sound goes along a bar at 1200 (lead) to 13000 m/s
+/// (beryllium). Elastomers become as heavy by a third of metal powder, which makes them three times
+/// as stiff: 6 m/s and more.
+constexpr double kStone = 2500.0;   // [kg/m^3]
+constexpr double kSlowest = 6.0;    // [m/s]
+constexpr double kSlowInMPa = 0.5;  // [m/s] slower ones are in GPa
+
 /// Strain that the loads cause if each pulls along its rod with all of its force. It is 1 where
 /// the linear law has no meaning; supports, buoyancy and foundations may well bear nine tenths.
 constexpr double kStrain = 10.0;
@@ -123,7 +130,8 @@ class Units {
           material.youngs_modulus, 1e6 * material.youngs_modulus);
     }
     if (std::string density = density_problem(material); !density.empty()) return density;
-    return strain_problem(rod, length);
+    if (std::string strain = strain_problem(rod, length); !strain.empty()) return strain;
+    return softness_problem(material);
   }
 
  private:
@@ -170,6 +178,19 @@ class Units {
         "beyond 1. Is its modulus in {}? 'youngs_modulus' then is {:g}. Else look at the units of "
         "its lengths (m) and loads (N)",
         strain, unit->name, unit->factor * material.youngs_modulus);
+  }
+
+  /// A gel is as soft and a metal is as heavy, and nothing is both.
+  static std::string softness_problem(const Material& material) {
+    if (material.density < kStone) return {};
+    const double speed = std::sqrt(material.youngs_modulus / material.density);
+    if (speed >= kSlowest) return {};
+    const bool in_MPa = speed >= kSlowInMPa;
+    return fmt::format(
+        "is as heavy as metal or stone ({:g} kg/m^3) and as soft as a gel: its modulus is {:g} Pa. "
+        "Is it in {}? 'youngs_modulus' then is {:g}",
+        material.density, material.youngs_modulus, in_MPa ? "MPa" : "GPa",
+        (in_MPa ? 1e6 : 1e9) * material.youngs_modulus);
   }
 
   const Scene& scene_;

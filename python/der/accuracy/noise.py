@@ -53,10 +53,14 @@ class ExactBelow:
         Any error bar up to this is, in the unit of the value.
     nothing
         So is one up to this if the value is 0 within it.
+    coordinates
+        So is one up to this, which may take many digits of the value: the rounding of coordinates,
+        times the stiffnesses that forces have of them.
     """
 
     rounding: float = 0.0
     nothing: float = 0.0
+    coordinates: float = 0.0
 
 
 #: No error bar is.
@@ -81,8 +85,7 @@ def exact_below(result: Result, unit: str, largest: float) -> ExactBelow:
         size = max(rod.EI / rod.length**2 for rod in rods)
     # Far from the origin, a position is large by the choice of coordinates alone.
     scale = min(largest, size) if unit == "m" else largest
-    rounding = max(_EXACT * scale, _rounding_of_coordinates(result, unit))
-    return ExactBelow(rounding, _EXACT * size)
+    return ExactBelow(_EXACT * scale, _EXACT * size, _rounding_of_coordinates(result, unit))
 
 
 def _rounding_of_coordinates(result: Result, unit: str) -> float:

@@ -87,9 +87,13 @@ class VerifiedValue:
     @property
     def is_exact(self) -> bool:
         """Whether refining changes nothing beyond rounding, whatever order that shows."""
+        within_coordinates = self.error_bar <= self.exact_below.coordinates
+        return bool(self._parts) and (within_coordinates or self._has_all_digits)
+
+    @property
+    def _has_all_digits(self) -> bool:
         bar, limits = self.error_bar, self.exact_below
-        is_nothing = abs(self.value) <= bar <= limits.nothing
-        return bool(self._parts) and (bar <= limits.rounding or is_nothing)
+        return bar <= limits.rounding or abs(self.value) <= bar <= limits.nothing
 
     @property
     def flagged(self) -> bool:
@@ -124,9 +128,13 @@ class VerifiedValue:
 
     @property
     def verdict(self) -> str:
-        """``converged``, ``exact``, or verdicts on parts of its error, such as ``slow in time``."""
+        """``converged``, or verdicts on parts of its error, such as ``slow in time``.
+
+        ``exact`` where no part is more than rounding, and ``rounding`` where that of coordinates
+        leaves less than nine digits.
+        """
         if self.is_exact:
-            return "exact"
+            return "exact" if self._has_all_digits else "rounding"
         found = [
             f"{part.verdict} in {where}"
             for where, part in self._parts_that_count

@@ -134,9 +134,13 @@ std::string diagnostics_of_probe(const std::string& quantity, const std::string&
 }
 
 TEST_CASE("space: a model that 'auto' chose for a scene in space has the quantities of space") {
-  for (const std::string quantity : {"slope", "z", "twist", "curvature_1"}) {
+  for (const std::string quantity : {"z", "twist", "curvature", "curvature_1"}) {
     CHECK(diagnostics_of_probe(quantity, "auto").empty());
   }
+  CHECK(contains(diagnostics_of_probe("slope", "auto"),
+                 "output.probes.tip.quantity: a scene of three components has no 'slope', flat as "
+                 "it is: an angle from an axis tells no direction in space, take 'tx', 'ty' and "
+                 "'tz'; or write 'model: planar'"));
 }
 
 TEST_CASE("space: a probe asks for what the chosen model has, and chooses none") {

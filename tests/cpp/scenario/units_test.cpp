@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "der/scenario/scenario.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 using test::contains;
 using Warnings = std::vector<std::string>;
+using Materials = std::vector<std::pair<std::string, std::string>>;
 
 Warnings warnings_of(const std::vector<Override>& overrides) {
   return test::beam(overrides).scene().warnings;
@@ -81,6 +83,29 @@ TEST_CASE("units: loads that strain a rod by far more than it bears doubt its mo
   CHECK(with_material("1e9", "1000", pull).empty());
   // A gel of 1 kPa that would hang by its own weight.
   CHECK(with_material("1000", "1000", kGravity).empty());
+}
+
+TEST_CASE("units: a metal or a stone that is as soft as a gel has its modulus in MPa or GPa") {
+  // Steel, aluminium, copper, lead, glass, granite.
+  check_one(with_material("210000", "7850"), "Is it in MPa? 'youngs_modulus' then is 2.1e+11");
+  check_one(with_material("70000", "2700", kGravity), "'youngs_modulus' then is 7e+10");
+  check_one(with_material("120e3", "8960"), "'youngs_modulus' then is 1.2e+11");
+  check_one(with_material("16000", "11340"), "'youngs_modulus' then is 1.6e+10");
+  check_one(with_material("70000", "2500"), "'youngs_modulus' then is 7e+10");
+  check_one(with_material("210", "7850"), "Is it in GPa? 'youngs_modulus' then is 2.1e+11");
+  check_one(with_material("16", "11340"), "Is it in GPa? 'youngs_modulus' then is 1.6e+10");
+  // Nothing needs to move or to weigh.
+  check_one(warnings_of({{"rods.beam.material", "{youngs_modulus: 210000, density: 7850}"},
+                         {"time", ""},
+                         {"analysis", "static"},
+                         {"supports", "[{rod: beam, at: start, clamp: true}]"}}),
+            "Is it in MPa?");
+  // Gels, silicone, silicone with magnetic powder, lead.
+  for (const auto& [modulus, density] : Materials{
+           {"1e3", "1000"}, {"1e5", "1000"}, {"6e4", "1070"}, {"2e5", "3000"}, {"16e9", "11340"}}) {
+    CAPTURE(modulus);
+    CHECK(with_material(modulus, density).empty());
+  }
 }
 
 TEST_CASE("units: a scene gets one warning, whatever else is wrong") {

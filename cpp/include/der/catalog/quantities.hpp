@@ -91,16 +91,24 @@ inline constexpr std::string_view kSlope = "slope";
 /// The table. It is written in output/quantities.cpp, where the makers are; this header is all that
 /// the reader of scenes knows of it.
 const std::vector<Quantity>& quantities();
-/// Whether a model has the quantity, and whether models of its kind have it.
-bool is_available(const Quantity& quantity, const Model& model);
+/// Whether models of a kind have the quantity by themselves.
 bool is_available_in(int dimension, bool has_sections, const Quantity& quantity);
-/// Whether a model has the quantity, or has its value because it stands for a larger one: such as
-/// `z` of rods in a plane, where `auto` chose `planar` for a scene of three components.
+/// Whether a model has it by itself.
+bool is_own(const Quantity& quantity, const Model& model);
+/// Whether all rods of a model have the quantity. The dimension of the scene decides: where `auto`
+/// chose `planar` for a scene of three components, it has the quantities of space, such as `z`, and
+/// none that only a plane has, such as `slope`. So a sweep may pass a scene that is flat.
+bool is_available(const Quantity& quantity, const Model& model);
+/// Whether it is available, or is the value of a larger model that `spatial_bend` stands for, such
+/// as `twist`. Those towards directors need a clamp that holds the section of the rod.
 bool is_answered(const Quantity& quantity, const Model& model);
-/// Whether only models in space have it by themselves.
+/// Whether only planar models have it, and whether only models in space have it by themselves.
+bool is_of_plane(const Quantity& quantity);
 bool is_of_space(const Quantity& quantity);
 /// The message that the model of this name does not have the quantity, with what to write.
 std::string lacks(std::string_view model, const Quantity& quantity);
+/// The message that a flat scene of three components lacks a quantity of planar scenes.
+std::string lacks_in_flat_scene(const Quantity& quantity);
 /// The message that the model 'spatial_bend', which stands for 'spatial', does not tell where the
 /// directors of a rod are.
 std::string lacks_held_section(std::string_view rod, std::string_view quantity);

@@ -17,7 +17,8 @@ struct ChosenModel {
 /// - `planar` where every position, velocity, force, moment and prescribed motion lies in the x-y
 ///   plane, clamps rotate about z only, and every rod bends in its plane without twisting: one of
 ///   its directors is normal to the plane or the two bending stiffnesses are equal, its natural
-///   curvature is about z, and it has no initial or natural twist and no prescribed twist.
+///   curvature is about z, and it has no initial or natural twist and no prescribed twist. Not for
+///   the vibration modes of a scene of three components, which leave the plane.
 /// - `spatial_bend` where no rod twists: equal bending stiffnesses, straight without stress, no
 ///   initial or natural twist, no moment and no follower load, and at most one support on each rod
 ///   that holds its section (`clamp: true`), none that twists it or spins it over time. The energy

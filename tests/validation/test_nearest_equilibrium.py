@@ -96,8 +96,8 @@ CASES = [(ends, mode + 1) for ends in QUARTERS for mode in range(len(QUARTERS[en
 @pytest.mark.parametrize(("ends", "mode"), CASES)
 def test_buckling_modes_are_kept_in_the_plane(fitted_order, ends, mode, angle, EA):
     errors = []
-    # Each quarter wave has at least 5 edges.
-    sizes = [max(1, QUARTERS[ends][mode - 1] // 4) * n for n in SIZES]
+    # Each quarter wave has at least 6 edges.
+    sizes = [max(1, QUARTERS[ends][mode - 1] // 2) * n for n in SIZES]
     for n in sizes:
         load, points = curve(ends, mode, angle, EA, n + 1)
         simulation, report = kept(column(ends, n, EA, tip_force(-load, 0)), points)

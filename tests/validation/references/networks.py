@@ -18,7 +18,8 @@ Vibrations about an equilibrium: the load of inertia m omega^2 times the displac
 derivatives alone, and a natural frequency makes them singular.
 
 A scene is read as far as it has straight rods with their stiffnesses, joints, supports (components,
-clamps, constant motions, springs) and dead loads. Nothing is shared with `der`.
+clamps, constant motions, springs), dead loads and forces that turn with a rod. Nothing is shared with
+`der`.
 """
 
 from __future__ import annotations
@@ -68,6 +69,7 @@ class _Joint:
     moved: Array = field(default_factory=lambda: np.zeros(2))
     spring: Array = field(default_factory=lambda: np.zeros(2))
     force: Array = field(default_factory=lambda: np.zeros(2))
+    followers: list[tuple[int, Array]] = field(default_factory=list)  # with their rotations
 
 
 @dataclass
@@ -87,7 +89,7 @@ def _pair(value: Any) -> Array:
 class Network:
     """The rods of a scene."""
 
-    def __init__(self, scene: Scene, steps: int = 16) -> None:
+    def __init__(self, scene: Scene, steps: int = 12) -> None:
         self.steps = steps
         self.rods = {rod["name"]: rod for rod in scene["rods"]}
         self.joints: list[_Joint] = []
@@ -182,7 +184,13 @@ class Network:
     def _load(self, scene: Scene) -> None:
         for load in scene.get("loads", []):
             if "point_force" in load:
-                self._at(self.key(load["point_force"]))[0].force += load["point_force"]["force"]
+                key = self.key(load["point_force"])
+                force = np.asarray(load["point_force"]["force"], dtype=float)
+                joint = self._at(key)[0]
+                if load["point_force"].get("follower"):
+                    joint.followers.append((self._rotation_at[key], force))
+                else:
+                    joint.force += force
             elif "moment" in load:
                 self._at(self.key(load["moment"]))[1].moment += load["moment"]["moment"]
             elif "distributed_force" in load:
@@ -266,6 +274,11 @@ class Network:
                 else:
                     residual[row] = level * joint.force[c] - joint.spring[c] * moved
                     matrix[row, row] = -joint.spring[c]
+                    for group, force in joint.followers:
+                        cosine, sine = np.cos(turns[group]), np.sin(turns[group])
+                        across = np.array([-force[1], force[0]])
+                        residual[row] += level * (cosine * force + sine * across)[c]
+                        matrix[row, 2 * J + group] += level * (cosine * across - sine * force)[c]
         for i, rotation in enumerate(self.rotations):
             row = 2 * J + i
             if rotation.held:
@@ -298,7 +311,7 @@ class Network:
                 matrix[own + c, column] -= 1.0
         return residual, matrix
 
-    def solve(self, levels: int = 4) -> Network:
+    def solve(self, levels: int = 3) -> Network:
         """Find the equilibrium, with all loads and motions raised in equal parts."""
         w = np.concatenate(
             [

@@ -100,13 +100,12 @@ ExitCode execute(const Options& options) {
   }
   const Scenario scenario = Scenario::load(options.scene, options.overrides);
   if (options.resume && is_finished(options, scenario)) return ExitCode::Completed;
-  const bool reports_check = options.check && !options.quiet;
-  if (reports_check) {
-    print(check_head(scenario, Style::of(stdout)));
+  if (!options.quiet) {  // before what may take long
+    print(scene_head(scenario, Style::of(stdout)));
     std::fflush(stdout);
   }
   Simulation simulation(scenario);
-  if (reports_check) print(check_report(simulation, Style::of(stdout)));
+  if (options.check && !options.quiet) print(check_report(simulation, Style::of(stdout)));
   if (options.check) return ExitCode::Completed;
   if (!options.resume) apply_start(simulation);
   return run_scene(options, simulation);

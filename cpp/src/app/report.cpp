@@ -76,11 +76,6 @@ std::string line(std::string_view label, const std::string& text, const Style& s
   return fmt::format("  {} {}\n", style.dim(fmt::format("{:<8}", label)), text);
 }
 
-std::string heading(const Scenario& scenario, const Style& style) {
-  const std::string& title = scenario.scene().title;
-  return style.bold(printable(title.empty() ? scenario.source() : title)) + "\n";
-}
-
 std::string model_lines(const Simulation& simulation, const Style& style) {
   const Model& model = simulation.model();
   const UsedSolver solver = used_solver(simulation);
@@ -300,14 +295,19 @@ std::string size_text(const Simulation& simulation) {
 
 }  // namespace
 
+std::string scene_head(const Scenario& scenario, const Style& style) {
+  const scenario::Scene& scene = scenario.scene();
+  const std::string& title = scene.title.empty() ? scenario.source() : scene.title;
+  return style.bold(printable(title)) + "\n" + warning_lines(scene.warnings, style);
+}
+
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
                        const RunOutcome& outcome, const RunFolder& folder, const Style& style) {
-  std::string text = heading(simulation.scenario(), style);
-  text += status_line(simulation, outcome, style);
+  std::string text = status_line(simulation, outcome, style);
   text += line("ran", what_ran(simulation), style);
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);
-  text += warning_lines(warnings(simulation, outcome), style);
+  text += warning_lines(warnings_of_run(simulation, outcome), style);
   for (const std::string& hint : hints(simulation, outcome.counters))
     text += line("hint", hint, style);
   text += line("results", printable((folder.path() / "").string()), style);
@@ -321,10 +321,6 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
     text += "\n" + buckling_table(outcome, style);
   }
   return text;
-}
-
-std::string check_head(const Scenario& scenario, const Style& style) {
-  return heading(scenario, style) + warning_lines(scenario.scene().warnings, style);
 }
 
 std::string check_report(const Simulation& simulation, const Style& style) {

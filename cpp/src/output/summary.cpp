@@ -227,8 +227,15 @@ std::vector<std::string> doubts(const Simulation& simulation, const RunOutcome& 
 }
 
 std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome& outcome) {
+  std::vector<std::string> found = simulation.scenario().scene().warnings;
+  const std::vector<std::string> of_run = warnings_of_run(simulation, outcome);
+  found.insert(found.end(), of_run.begin(), of_run.end());
+  return found;
+}
+
+std::vector<std::string> warnings_of_run(const Simulation& simulation, const RunOutcome& outcome) {
   const scenario::Scene& scene = simulation.scenario().scene();
-  std::vector<std::string> found = scene.warnings;
+  std::vector<std::string> found;
   const auto add = [&](const std::vector<std::string>& more) {
     found.insert(found.end(), more.begin(), more.end());
   };
@@ -237,7 +244,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome
     found.push_back(plane->warning);
   }
   if (sought_buckling(simulation) && outcome.ok()) {
-    add(buckling_warnings(outcome.buckling, simulation.scenario().scene()));
+    add(buckling_warnings(outcome.buckling, scene));
     return found;
   }
   if (simulation.plan().step > 0.0) add(fine_table_warnings(scene, simulation.plan().step));

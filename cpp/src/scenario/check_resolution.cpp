@@ -123,11 +123,20 @@ double largest_difference(const TwistedClamp& a, const TwistedClamp& b, double e
 
 /// A rod of so many nodes or more has lost its bending to rounding: the error of the stiffness of
 /// its edges grows with the fourth power of their number against that of the whole rod, and is
-/// 1e5 times that of a cantilever by then. Searches end as `too_fine` from about 70,000 on.
+/// 1e5 times that of a cantilever by then.
 constexpr int kTooManyNodes = 100'000;
-/// Memory that a model takes for each node at least [bytes], of three coordinates and of two.
-constexpr double kBytesInSpace = 2000.0;
-constexpr double kBytesInPlane = 1200.0;
+/// From so many on a search may take minutes and end as `too_fine`, by the load and by EA. Of 26
+/// with 20,000 to 80,000 nodes and EA L^2/EI from 1e4 to 1e8, 4 failed and 7 took more than a
+/// minute. All others found the right shape.
+constexpr int kManyNodes = 20'000;
+
+/// Memory that is taken for each node at least [bytes].
+struct NodeMemory {
+  double in_plane;
+  double in_space;
+};
+constexpr NodeMemory kOfRun{1200.0, 2000.0};     // over time
+constexpr NodeMemory kOfSearch{3000.0, 6000.0};  // of an equilibrium
 
 /// Whether a load bends a straight rod: it has a part across it, or may have one.
 struct Bends {
@@ -179,18 +188,29 @@ class Resolution {
   }
 
   /// Reports so many nodes that no equilibrium, mode or buckling load of a rod that bends can be
-  /// found, and warns of them in a run over time.
+  /// found, and warns of them in a run over time. Warns of fewer that may be too many.
   void check_fineness() {
-    if (line_.num_nodes() < kTooManyNodes || is_cable(rod_) || is_only_pulled()) return;
+    const bool is_searched =
+        !context_.scene.is_dynamic() || context_.scene.start_from == "equilibrium";
+    if (line_.num_nodes() < (is_searched ? kManyNodes : kTooManyNodes)) return;
+    if (is_cable(rod_) || is_only_pulled()) return;
+    const NodeMemory& of_node = is_searched ? kOfSearch : kOfRun;
     const double memory =
-        line_.num_nodes() * (context_.dimension == 2 ? kBytesInPlane : kBytesInSpace);
+        line_.num_nodes() * (context_.dimension == 2 ? of_node.in_plane : of_node.in_space);
     const std::string takes = fmt::format(
-        "{} nodes take {:.1f} GB of memory or more, and rounding hides how a rod of so many bends",
+        "{} nodes take {:.2g} GB of memory or more, and rounding hides how a rod of so many bends",
         line_.num_nodes(), 1e-9 * memory);
     constexpr const char* kAdvice = "write fewer, 200 resolve most shapes and 2000 nearly all";
-    if (context_.scene.is_dynamic() && context_.scene.start_from != "equilibrium") {
+    if (!is_searched) {
       context_.scene.warnings.push_back(
           fmt::format("rod '{}' is too fine: {}: {}", rod_.name, takes, kAdvice));
+      return;
+    }
+    if (line_.num_nodes() < kTooManyNodes) {
+      context_.scene.warnings.push_back(
+          fmt::format("rod '{}' may be too fine: {}. The search can take minutes and end as "
+                      "'too_fine': {}",
+                      rod_.name, takes, kAdvice));
       return;
     }
     const RodText& given = context_.scene.given_rods[static_cast<std::size_t>(number_)];

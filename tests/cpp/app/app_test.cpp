@@ -84,6 +84,7 @@ TEST_CASE("the report names what ran, why, and every probe") {
   Recorder recorder(simulation);
   const RunOutcome outcome = run(simulation, recorder);
   const std::string report =
+      scene_head(simulation.scenario(), Style::plain()) +
       run_report(simulation, recorder, outcome, RunFolder("runs/spheres"), Style::plain());
   const std::vector<std::string> parts{"Three spheres",
                                        "completed",

@@ -10,13 +10,13 @@
 
 namespace der::app {
 
-/// The summary that der_run prints at the end: what ran, with which model and solver and why, what
-/// it cost, the probes, and where the results are.
+/// The text that der_run prints of a scene at once: its title, and what is doubtful about it.
+std::string scene_head(const Scenario& scenario, const Style& style);
+/// The summary that der_run prints at the end of a run: what ran, with which model and solver and
+/// why, what it cost, the probes, and where the results are.
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
                        const RunOutcome& outcome, const RunFolder& folder, const Style& style);
 
-/// The text that --check prints of a scene at once: its title, and what is doubtful about it.
-std::string check_head(const Scenario& scenario, const Style& style);
 /// The text that --check prints once the model is there, which may take seconds.
 std::string check_report(const Simulation& simulation, const Style& style);
 

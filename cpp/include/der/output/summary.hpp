@@ -24,10 +24,11 @@ std::string created_energy_warning(const Simulation& simulation);
 /// strains for which no linear law holds, created energy.
 std::vector<std::string> doubts(const Simulation& simulation, const RunOutcome& outcome);
 
-/// Reasons to doubt a completed run, in sentences: the scene's own warnings; those of `doubts`;
-/// equal steps that are too long to resolve a table; a structure to which linear buckling does not
-/// apply.
+/// Reasons to doubt a completed run, in sentences: the scene's own warnings, and those of the run.
 std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome& outcome);
+/// Those that the scene alone did not tell: those of `doubts`; equal steps that are too long to
+/// resolve a table; a structure to which linear buckling does not apply.
+std::vector<std::string> warnings_of_run(const Simulation& simulation, const RunOutcome& outcome);
 
 /// The summary of an ended run (keys: docs/results.md), in the order in which a person wants to
 /// read it. Values that the run did not come to (the probes of an equilibrium that was not found)

@@ -831,8 +831,9 @@ def test_progress_and_colours_are_for_terminals(scene: Path, tmp_path: Path) -> 
     assert 1 <= updates <= 10 * seconds + 1
     assert " left" in text
     assert "\x1b[32mcompleted\x1b[0m" in text
-    # The line is gone when the summary comes.
-    assert text.rindex("\r\x1b[K") < text.index("Three spheres")
+    # The title stands before the line, which is gone when the summary comes.
+    assert text.index("Three spheres") < text.index("\r\x1b[K")
+    assert text.rindex("\r\x1b[K") < text.index("status")
 
     text = on_terminal(scene, *length, NO_COLOR="1")
     assert "[32m" not in text

@@ -71,7 +71,7 @@ def result_of(scenario: Scenario, states: Sequence[State]) -> Result:
             )
         recording = _recorded(_core.Simulation(scenario), states[0])
         return to_result(scenario, recording, list(recording.probes), recording.summary)
-    # Its end is reached with the first state after the start, so that no run of it takes a step.
+    # The twin ends at the first time after the start, so that it takes no step from any such state.
     ends = min((state.time for state in states if state.time > 0.0), default=scenario.duration)
     twin = _core.Simulation(scenario.with_({"time.duration": ends, "output.every": ends}))
     return _joined(scenario, [_recorded(twin, state) for state in states], states[-1])
@@ -107,7 +107,7 @@ def _joined(scenario: Scenario, recordings: Sequence[RunRecording], last: State)
         summary["unit"] = unit
         probes[name] = ProbeSeries(values, unit, summary)
     ended = {
-        "status": "completed" if last.time >= scenario.duration else "stopped",
+        "status": "completed" if last.time >= scenario.duration * (1.0 - 1e-12) else "stopped",
         "time": last.time,
         "steps": last.step_count,
         "energies": {name: float(values[-1]) for name, values in energies.items()},

@@ -8,6 +8,7 @@ its first integral.
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import der
@@ -71,6 +72,7 @@ def column(ends: str, edges: int, EA: float, force: list[dict[str, Any]]) -> dic
 
 
 def in_space(scene: dict[str, Any]) -> dict[str, Any]:
+    scene = copy.deepcopy(scene)
     (rod,) = scene["rods"]
     rod |= {"from": [0, 0, 0], "to": [1, 0, 0]}
     rod["cross_section"]["stiffness"] |= {"GJ": 1.0}

@@ -18,8 +18,7 @@ Vibrations about an equilibrium: the load of inertia m omega^2 times the displac
 derivatives alone, and a natural frequency makes them singular.
 
 A scene is read as far as it has straight rods with their stiffnesses, joints, supports (components,
-clamps, constant motions, springs), dead loads and forces that turn with a rod. Nothing is shared with
-`der`.
+clamps, constant motions, springs), dead loads and follower forces. Nothing is shared with `der`.
 """
 
 from __future__ import annotations
@@ -339,7 +338,7 @@ class Network:
         return float(np.abs(self._last[:j]).max())
 
     def states(self, rod: str, places: Array, side: str = "after") -> Array:
-        """(x, y, theta, H, V, M) at arc lengths, shape (6, places): (H, V, M) of the part beyond."""
+        """(x, y, theta, H, V, M) at arc lengths, the last three of the part beyond: (6, places)."""
         own = [k for k, piece in enumerate(self.pieces) if piece.rod == rod]
         tiny = 1e-9 * self.length(rod) * (1 if side == "after" else -1)
         ends = np.array([self.pieces[k].end for k in own[:-1]])
@@ -347,8 +346,9 @@ class Network:
         spans = places - np.array([self.pieces[k].start for k in piece])
         start = np.repeat(self._starts(self.w)[np.newaxis].astype(complex), len(places), axis=0)
         lanes = np.arange(len(places))
-        found: Array = self._shoot(start, spans[:, np.newaxis, np.newaxis], 1.0)[lanes, :, piece].T
-        return found.real
+        end = self._shoot(start, spans[:, np.newaxis, np.newaxis], 1.0)
+        found: Array = end[lanes, :, piece].T.real
+        return found
 
     def along(self, quantity: str, rod: str, places: Array, side: str = "after") -> Array:
         """A quantity as `der` names it, at arc lengths."""

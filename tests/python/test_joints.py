@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +15,8 @@ import numpy as np
 import pytest
 
 matplotlib.use("Agg")
+
+DER_RUN = os.environ.get("DER_RUN", str(Path(sys.executable).with_name("der_run")))
 
 STIFFNESS = {"stiffness": {"EA": 1e4, "EI": 1.0, "mass_per_length": 1.0}}
 
@@ -125,6 +130,38 @@ def test_a_state_goes_on_bit_for_bit() -> None:
     other.restore_state(pickle.loads(pickle.dumps(saved)))
     other.step(5)
     np.testing.assert_array_equal(other.positions, simulation.positions)
+
+
+def test_a_stopped_run_is_resumed_bit_for_bit(tmp_path: Path) -> None:
+    whole = der.run(in_motion(), out=tmp_path / "whole")
+    simulation = der.Simulation(in_motion())
+    simulation.run(lambda s: s.step_count < 20, out=tmp_path / "part")
+    command = [DER_RUN, tmp_path / "part" / "scene.yaml", "--out", tmp_path / "part", "--resume"]
+    subprocess.run(command, check=True, capture_output=True)
+    resumed = der.open_run(tmp_path / "part")
+    assert np.array_equal(resumed.positions, whole.positions)
+    assert np.array_equal(resumed.probes["turn"], whole.probes["turn"])
+
+
+def test_rods_spin_about_their_joint_as_they_are_drawn() -> None:
+    """Velocities of a rigid spin differ at the joint by rounding."""
+    scene = in_motion()
+    del scene["loads"], scene["supports"], scene["output"]
+    beam, column = scene["rods"][1], scene["rods"][0]
+    beam |= {"from": [0, 0], "to": [1, 0], "nodes": 11}
+    column |= {"from": [0.37, 0], "to": [0.37, 1], "nodes": 11}
+    along = np.linspace(0, 1, 11)
+    beam["initial_velocity"] = [[0.0, 2 * (x - 0.37)] for x in along]
+    column["initial_velocity"] = [[-2 * y, 0.0] for y in along]
+    scene["joints"][0]["of"] = [{"rod": "beam", "at": 0.37}, {"rod": "column", "at": "start"}]
+    simulation = der.Simulation(scene)
+    x, y = simulation.positions.T
+    assert np.allclose(
+        simulation.velocities, np.stack([-2 * y, 2 * (x - 0.37)], axis=1), atol=1e-12
+    )
+    column["initial_velocity"] = [[-2 * y, 0.1] for y in along]
+    with pytest.raises(ValueError, match="different velocities"):
+        der.Simulation(scene)
 
 
 def test_members_of_a_batch_are_simulations() -> None:

@@ -102,6 +102,11 @@ void take_kink_out(const Numbers& nodes, Numbers& weights) {
   if (!take_kink_out(nodes, kCubic, weights)) take_kink_out(nodes, kCubic - 1, weights);
 }
 
+bool is_leg_end(const RodMesh& rod, Index place) {
+  return std::any_of(rod.legs.begin(), rod.legs.end(),
+                     [&](const Leg& leg) { return place == leg.first || place == leg.last; });
+}
+
 /// The places from the first to the last one that a point between `right - 1` and `right` may have:
 /// up to the next ones on both sides where `ends` says that they end there.
 template <class Ends>
@@ -125,7 +130,9 @@ std::vector<Weighted> node_weights(const RodMesh& rod, double s, const Model& mo
 
   const auto& arc = rod.arc_length;
   const auto right = static_cast<Index>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
-  const auto at_corner = [&](Index place) { return is_corner(rod, place, model); };
+  const auto at_corner = [&](Index place) {
+    return is_corner(rod, place, model) || is_leg_end(rod, place);
+  };
   const auto at_force = [&](Index place) {
     return rod.divides_places[to_size(rod.position(place))] || at_corner(place);
   };

@@ -112,7 +112,15 @@ FrameLayout layout_in(hid_t file) {
   const hdf5::Handle probes = hdf5::open_group(file, "probes");
   std::vector<std::string> names = hdf5::names_in(probes.id());
   std::sort(names.begin(), names.end());
-  return {dimensions[1], dimensions[2], sections_in(file), turns_in(file), std::move(names), {}};
+  FrameLayout layout{dimensions[1],  dimensions[2],    sections_in(file),
+                     turns_in(file), std::move(names), {}};
+  const std::int64_t rotations = hdf5::read_integer_attribute(file, "rotations");
+  if (rotations < 0 || static_cast<hsize_t>(rotations) > layout.turns) {
+    throw IoError("its 'rotations' are " + std::to_string(rotations) + " and should be 0 to " +
+                  std::to_string(layout.turns));
+  }
+  layout.rotations = static_cast<hsize_t>(rotations);
+  return layout;
 }
 
 void check_times(const std::vector<double>& times) {
@@ -214,7 +222,7 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
   std::sort(names.begin(), names.end());
   if (layout.nodes != there.nodes || layout.dimension != there.dimension ||
       layout.sections != there.sections || layout.turns != there.turns ||
-      names != there.probe_names) {
+      layout.rotations != there.rotations || names != there.probe_names) {
     throw IoError("its nodes, edges or probes are not those of the scene");
   }
   FrameColumns columns;
@@ -241,9 +249,10 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
 }
 
 std::size_t FrameColumns::bytes_per_frame() const {
-  const std::size_t numbers = 2 * layout_.num_dofs() + layout_.frame_numbers() + layout_.turns +
-                              energies_.columns.size() + work_.columns.size() +
-                              probes_.columns.size() + 3;  // time, step, checksum
+  const std::size_t numbers = 2 * (layout_.num_positions() + layout_.sections) +
+                              layout_.frame_numbers() + layout_.turns + energies_.columns.size() +
+                              work_.columns.size() + probes_.columns.size() +
+                              3;  // time, step, checksum
   return sizeof(double) * numbers;
 }
 

@@ -21,12 +21,14 @@ struct FrameLayout {
   hsize_t turns = 0;     ///< edges whose whole turns are followed
   std::vector<std::string> probe_names;
   std::vector<std::string> probe_units;  ///< one a probe, to create the columns
+  /// Rotations of joints among the degrees of freedom. Frames keep them with the turns.
+  hsize_t rotations = 0;
 
   [[nodiscard]] std::size_t num_positions() const {
     return static_cast<std::size_t>(nodes * dimension);
   }
   [[nodiscard]] std::size_t num_dofs() const {
-    return num_positions() + static_cast<std::size_t>(sections);
+    return num_positions() + static_cast<std::size_t>(sections + rotations);
   }
   /// Numbers of the frames of all sections.
   [[nodiscard]] std::size_t frame_numbers() const {

@@ -39,7 +39,8 @@ FrameLayout layout_of(const Model& model) {
           model.has_sections() ? static_cast<hsize_t>(model.framed_edges.size()) : 0,
           static_cast<hsize_t>(num_saved_turns(model)),
           {},
-          {}};
+          {},
+          static_cast<hsize_t>(model.dofs.num_rotations())};
 }
 
 FrameLayout layout_of(const Simulation& simulation, const Recorder& recorder) {

@@ -112,6 +112,7 @@ void write_head(hid_t file, const Scenario& scenario, const Model& model) {
   hdf5::write_attribute(file, "analysis", std::string(scene.analysis_name()));
   hdf5::write_attribute(file, "model", model.name);
   hdf5::write_attribute(file, "dimension", std::int64_t{model.dimension});
+  hdf5::write_attribute(file, "rotations", std::int64_t{model.dofs.num_rotations()});
   write_text(file, "scene", scenario.to_yaml());
   const Handle rods = hdf5::create_group(file, "rods");
   for (const RodMesh& rod : model.rods) write_rod(rods.id(), rod);

@@ -17,7 +17,7 @@ namespace der {
 /// The parts of a run file besides frames and checkpoints (layout: docs/results.md).
 
 /// Version of the layout; readers refuse what they do not know.
-constexpr std::int64_t kFormatVersion = 5;
+constexpr std::int64_t kFormatVersion = 6;
 
 /// Attributes of the file, the scene, and the rods.
 void write_head(hid_t file, const Scenario& scenario, const Model& model);

@@ -220,6 +220,9 @@ const std::vector<Mistake>& mistakes() {
       {"model: none", [](hid_t file) { H5Adelete(file, "model"); }},
       {"model: a number", attribute("/", "model", H5T_NATIVE_INT64, {})},
       {"dimension: none", [](hid_t file) { H5Adelete(file, "dimension"); }},
+      {"rotations: none", [](hid_t file) { H5Adelete(file, "rotations"); }},
+      {"rotations: negative", [](hid_t file) { put_integer_attribute(file, "rotations", -1); }},
+      {"rotations: of no joint", [](hid_t file) { put_integer_attribute(file, "rotations", 1); }},
       {"sections of a planar run",
        [](hid_t file) {
          H5Gclose(H5Gcreate2(file, "sections", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));

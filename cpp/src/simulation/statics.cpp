@@ -10,6 +10,7 @@
 #include "der/loads/external_force.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
+#include "der/statics/written_shape.hpp"
 #include "der/supports/written_turns.hpp"
 #include "simulation/stepper_options.hpp"
 #include "simulation/undo.hpp"
@@ -58,7 +59,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& b
   check_finite_state();
   State found = state_;
   for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
-  if (energy_monitor_.has_written_shape(found)) follow_written(model_, found);
+  if (energy_monitor_.has_written_shape(found)) follow_written_shape(found, beat);
   EquilibriumOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
   // Solved once, not at every step: one more iteration takes the last digits too.
@@ -75,6 +76,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& b
         status_of(report.failed->cause));
   }
   found.velocities.setZero();
+  count_angles_from_shape(model_, found);
   state_ = std::as_const(found);  // copied, not moved: views of the vectors stay valid
   start_anew();
   return report;
@@ -170,6 +172,7 @@ void Simulation::show(const PathPoint& point, std::int64_t index) {
   state_.followed = point.followed;
   state_.step = index;
   state_.time = static_cast<double>(index);
+  count_angles_from_shape(model_, state_);
 }
 
 Vector Simulation::Forces::unbalanced(const Model& model) const {

@@ -41,7 +41,7 @@ class WrittenSections {
     }
     balance_sections();
     for (std::size_t i = 0; i < chains_.size(); ++i) {
-      if (chains_[i].keeps_twist()) find_turn(chains_[i], turns[i]);
+      if (chains_[i].has_end()) find_turn(chains_[i], turns[i]);
     }
   }
 

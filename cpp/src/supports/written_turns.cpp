@@ -1,7 +1,9 @@
 #include "der/supports/written_turns.hpp"
 
+#include <cmath>
 #include <vector>
 
+#include "der/core/constants.hpp"
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/kinematics/section_frame.hpp"
@@ -72,6 +74,17 @@ void count_along(const RodMesh& rod, const Model& model, State& state) {
   }
 }
 
+/// Whether a program has turned clamps at rest, so far that frames do not tell the way.
+bool has_turned_clamps_at_once(const Model& model, const State& state) {
+  if (state.last_step > 0.0) return false;
+  bool any = false;
+  for_each_turning_control(model, [&](Index control) {
+    const Ramp* ramp = find_ramp(state, control);
+    any = any || (ramp != nullptr && std::abs(ramp->at(state.time) - ramp->from) > 0.5 * kPi);
+  });
+  return any;
+}
+
 auto frames_in(const Model& model, Vector& followed) {
   return followed.tail(model.initial_frames.size());
 }
@@ -100,6 +113,7 @@ bool lost_angles(const Model& model, const State& state) {
   evaluate_controls(model, state, state.time, controls);
   const bool never_moved = state.followed == unwrapped_of_reference(model);
   return (never_moved && largest_turn_of_clamps(model, controls) > 0.0) ||
+         has_turned_clamps_at_once(model, state) ||
          turned_too_far(model, state.positions, controls, state.followed) >= 0;
 }
 

@@ -14,7 +14,8 @@ namespace der {
 void follow_written(const Model& model, State& state);
 
 /// Whether a state tells the turns of its sections no more once a program has written its positions
-/// but not their angles: it never moved while clamps are turned, or an edge is turned too far.
+/// but not their angles: it never moved while clamps are turned, a clamp at rest has been turned by
+/// more than a quarter turn since, or an edge is turned too far.
 bool lost_angles(const Model& model, const State& state);
 
 /// Moves `State::followed` of a model with sections to positions and angles of sections that a

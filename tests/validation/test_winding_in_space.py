@@ -270,3 +270,20 @@ def test_a_nudge_in_a_run_over_time_turns_no_section():
         simulation.step()
     assert runs[1].theta == pytest.approx(runs[0].theta, abs=1e-7)
     assert runs[1].directors == pytest.approx(runs[0].directors, abs=1e-7)
+
+
+@pytest.mark.parametrize(("before", "after"), [(0.0, 6.5), (6.5, 0.0), (3.0, 12.0), (8.0, 8.0)])
+def test_a_search_from_a_saved_equilibrium_follows_its_clamps(tmp_path, before, after):
+    """From where that run had turned them, whole turns included, also about the opposite axis."""
+    first = held(turned(AXES["oblique"], before, before))
+    der.run(first, out=tmp_path / "first")
+    opposite = [-component for component in AXES["oblique"]]
+    scene = {**held(turned(opposite, -after, after)), "start_from": str(tmp_path / "first")}
+    expected = der.Simulation(first)
+    expected.equilibrium()
+    for value in np.linspace(before, after, 40)[1:]:
+        expected.prescribe(1, angle=value, twist=value)
+        expected.equilibrium()
+    simulation = der.Simulation(scene)
+    simulation.equilibrium()
+    check_the_same(simulation, expected)

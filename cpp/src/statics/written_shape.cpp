@@ -89,22 +89,22 @@ class WrittenSections {
     constexpr int kMostSteps = 100;
     constexpr double kLargestStep = 0.5;  // [rad]
     constexpr double kSolved = 1e-11;     // [rad]
+    follow(model_, state_);
     Configuration shape = here();
     for (int i = 0; i < kMostSteps; ++i) {
       stiffness_.evaluate(shape);
       const Vector turned = newton_step();
       const double largest = turned.lpNorm<Eigen::Infinity>();
+      if (!(largest > kSolved)) break;
       shape.coordinates += std::min(1.0, kLargestStep / largest) * turned;
-      if (largest < kSolved) break;
     }
     state_.positions = shape.coordinates;
-    stiffness_.evaluate(shape);
   }
 
   /// By how much the sections turn [rad], all degrees of freedom: downhill, with the least of the
   /// shifts of their stiffness that makes it positive definite.
   Vector newton_step() {
-    constexpr double kHeld = 1e9;    // what holds the nodes, over the stiffness of edges
+    constexpr double kHeld = 1e9;     // what holds the nodes, over the stiffness of edges
     constexpr double kLeast = 1e-12;  // shift, over the stiffness against turning
     constexpr double kMost = 1e2;
     Mass shift{Vector::Zero(model_.num_dofs()), {}};
@@ -114,7 +114,8 @@ class WrittenSections {
         shift.lumped.segment(block.first, block.count)
             .setConstant(share * assembler_.largest_diagonal(block, stiffness_.values()));
       }
-      if (stiffness_.factorize(1.0, shift).negative_pivots == 0) break;
+      const Inertia inertia = stiffness_.factorize(1.0, shift);
+      if (inertia.factorised && inertia.negative_pivots == 0) break;
     }
     Vector torque = force_ - stiffness_.gradient();
     torque.head(model_.dofs.num_positions()).setZero();

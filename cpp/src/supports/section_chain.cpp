@@ -27,9 +27,8 @@ std::vector<const RodVertex*> ordered_vertices(const RodMesh& rod) {
   std::vector<const RodVertex*> order;
   for (const RodVertex& vertex : rod.vertices) order.push_back(&vertex);
   if (!rod.closed) return order;
-  const auto first = std::find_if(order.begin(), order.end(), [](const RodVertex* vertex) {
-    return vertex->leaves_clamp();
-  });
+  const auto first = std::find_if(order.begin(), order.end(),
+                                  [](const RodVertex* vertex) { return vertex->leaves_clamp(); });
   if (first != order.end()) std::rotate(order.begin(), first, order.end());
   return order;
 }
@@ -59,9 +58,7 @@ void set_frame(const SectionFrame& frame, Index edge, Eigen::Ref<Vector> frames)
 /// A rotation by a path, as a unit quaternion: two paths that differ by a turn have opposite ones.
 using Path = Eigen::Quaterniond;
 
-Path path_about(const Vec3& axis, double angle) {
-  return Path(Eigen::AngleAxisd(angle, axis));
-}
+Path path_about(const Vec3& axis, double angle) { return Path(Eigen::AngleAxisd(angle, axis)); }
 
 /// The smallest rotations from tangent to tangent along a chain, one after another.
 template <class TangentOf>
@@ -80,9 +77,9 @@ Path path_along(const SectionChain& chain, const Vec3& start, const Vec3& end,
 
 /// How one end of a chain has been moved from where it is drawn.
 struct EndMotion {
-  Vec3 drawn;           // tangent
-  Vec3 present;         // likewise
-  Path path;            // from one to the other
+  Vec3 drawn;          // tangent
+  Vec3 present;        // likewise
+  Path path;           // from one to the other
   double about = 0.0;  // of that about the drawn tangent [rad]
 };
 
@@ -157,12 +154,11 @@ double reference_turn(const Model& model, const SectionChain& chain, const Confi
   for (const Link& link : chain.links) drawn_turn += model.initial_frames[link.twist];
   const Path drawn = path_along(chain, start.drawn, end.drawn,
                                 [&](Index edge) { return drawn_tangent(edge, model); });
-  const Path present = path_along(chain, start.present, end.present, [&](Index edge) {
-    return present_tangent(edge, model, here);
-  });
+  const Path present = path_along(chain, start.present, end.present,
+                                  [&](Index edge) { return present_tangent(edge, model, here); });
   // As an unbroken motion keeps it: turn * present * start = end * drawn turn * drawn.
-  const Path turn = end.path * path_about(end.drawn, drawn_turn) * drawn *
-                    (present * start.path).conjugate();
+  const Path turn =
+      end.path * path_about(end.drawn, drawn_turn) * drawn * (present * start.path).conjugate();
   const double half = std::atan2(turn.vec().dot(end.present), turn.w());
   return 2.0 * nearest_turn(half, 0.5 * (drawn_turn + end.about - start.about));
 }

@@ -42,8 +42,8 @@ StaticLoads loads_of(const Model& model, const State& state) {
   return loads;
 }
 
-/// The controls at which the shape of a state was found: those of its clamps in space that a program
-/// has set since are where they were. A planar shape tells them itself.
+/// The controls at which the shape of a state was found: those of its clamps in space that a
+/// program has set since are where they were. A planar shape tells them itself.
 Vector controls_of_shape(const Model& model, const State& state, Vector controls) {
   if (model.dimension != 3) return controls;
   for_each_turning_control(model, [&](Index control) {

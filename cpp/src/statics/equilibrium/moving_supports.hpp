@@ -22,8 +22,7 @@ using Equilibrate = std::function<void(const StaticLoads& loads, Shape& shape)>;
 /// of clamps in space begin there, those of a plane with the edges beside them.
 /// Returns the whole turns of the rods before the clamps turned (`planar_whole_turns`), or nothing
 /// if no clamp turns.
-std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
-                                  const Vector& start, const Equilibrate& equilibrate,
-                                  Shape& shape);
+std::vector<double> move_supports(const Model& model, const StaticLoads& loads, const Vector& start,
+                                  const Equilibrate& equilibrate, Shape& shape);
 
 }  // namespace der::statics

@@ -260,6 +260,8 @@ class Simulation {
   void check_finite_state() const;
   /// Enters what a program has written since the last step in the frames and the audit.
   void enter_writes();
+  /// Moves what a state follows to the shape that a program has written into it.
+  void follow_written_shape(State& state, const CancelCallback& beat) const;
   /// The forces at the present state.
   struct Forces {
     Configuration here;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <variant>
@@ -179,6 +180,63 @@ void check_clamps(const std::string& from, const LastFrame& last, const Simulati
   }
 }
 
+/// The angle [rad] by which a clamp in space is rotated about `axis` at a time, if it is about this
+/// axis that it turns, and how far it is twisted.
+struct SpatialTurn {
+  double angle = 0.0;
+  double twist = 0.0;
+};
+
+std::optional<SpatialTurn> spatial_turn(const scenario::Support& clamp, double time,
+                                        const Vec3& axis) {
+  constexpr double kSameAxis = 1e-12;
+  SpatialTurn turn;
+  if (clamp.twist) turn.twist = value_at(*clamp.twist, time);
+  Vec3 own = Vec3::UnitZ();
+  if (clamp.axis_rotation) {
+    own = Eigen::Map<const Vec3>(clamp.axis_rotation->axis.data()).stableNormalized();
+    turn.angle = value_at(clamp.axis_rotation->angle, time);
+  } else if (clamp.rotation) {
+    turn.angle = value_at(*clamp.rotation, time);
+  }
+  if (turn.angle == 0.0) return turn;
+  if (own.cross(axis).norm() > kSameAxis) return std::nullopt;
+  if (own.dot(axis) < 0.0) turn.angle = -turn.angle;
+  return turn;
+}
+
+/// The ways of the clamps in space of a static scene from where the tables of that run had turned
+/// them: the rods have followed them there.
+std::vector<Ramp> ways_of_clamps(const LastFrame& last, const Simulation& simulation) {
+  const Model& model = simulation.model();
+  const Scenario before = Scenario::parse(last.scene);
+  if (model.dimension != 3 || simulation.scenario().scene().is_dynamic() || model.load_variation ||
+      std::holds_alternative<scenario::ContinuationAnalysis>(before.scene().analysis)) {
+    return {};
+  }
+  std::vector<Ramp> ways;
+  const double time = simulation.state().time;
+  for (const RodMesh& rod : model.rods) {
+    for (const Clamp& clamp : rod.clamps) {
+      for (const scenario::Support& other : before.scene().supports) {
+        if (!other.clamps() || other.rod != rod.name) continue;
+        const std::vector<Index> places = nodes_at(other.at, rod);
+        if (std::find(places.begin(), places.end(), clamp.place) == places.end()) continue;
+        const auto was = spatial_turn(other, last.time, clamp.held.axis);
+        if (!was) continue;
+        const auto add = [&](Index control, double from) {
+          if (control < 0) return;
+          const double to = control_value(model, simulation.state(), control);
+          if (from != to) ways.push_back({control, time, time, from, to});
+        };
+        add(clamp.held.rotation, was->angle);
+        add(clamp.held.twist, was->twist);
+      }
+    }
+  }
+  return ways;
+}
+
 bool follows_edges_of(const LastFrame& last, const Model& model) {
   if (last.turns.size() != num_turns(model)) return false;
   const Model there = build_model(Scenario::parse(last.scene).scene());
@@ -255,7 +313,11 @@ void apply_start(Simulation& simulation, const CancelCallback& beat) {
     check_held_nodes(from, last, model, state);
     check_clamps(from, last, simulation);
   }
+  // Frames are followed with the clamps as they were.
+  state.ramps = ways_of_clamps(last, simulation);
+  for (Ramp& way : state.ramps) way.end = way.start + 1.0;
   take_over_turns(last, model, state);
+  for (Ramp& way : state.ramps) way.end = way.start;
   simulation.start_anew();
   simulation.check_first_step();
 }

@@ -289,6 +289,8 @@ void Simulation::drive(Index control, double value, double end) {
   const auto known =
       std::find_if(state_.ramps.begin(), state_.ramps.end(),
                    [control](const Ramp& earlier) { return earlier.control == control; });
+  // In statics what was set before has not been reached yet, unless an equilibrium was found there.
+  if (known != state_.ramps.end() && !scenario_.scene().is_dynamic()) ramp.from = known->from;
   const auto past = [&](double time) {
     if (known != state_.ramps.end()) return known->past(time);
     return control_value(model_, state_, control, time);

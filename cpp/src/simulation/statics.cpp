@@ -10,6 +10,7 @@
 #include "der/loads/external_force.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
+#include "der/statics/written_shape.hpp"
 #include "der/supports/written_turns.hpp"
 #include "simulation/stepper_options.hpp"
 #include "simulation/undo.hpp"
@@ -57,8 +58,15 @@ OutOfPlaneBuckling Simulation::buckling_out_of_plane(const LinearBuckling& in_pl
 EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& beat) {
   check_finite_state();
   State found = state_;
-  for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
-  if (energy_monitor_.has_written_shape(found)) follow_written(model_, found);
+  const auto arrive = [&] {
+    found.ramps = state_.ramps;
+    for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
+  };
+  for (Ramp& ramp : found.ramps) ramp.start = ramp.end = found.time;
+  if (energy_monitor_.has_written_shape(found)) {
+    follow_written_shape(found, beat);
+    arrive();  // a written shape is one with the supports where they are
+  }
   EquilibriumOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
   // Solved once, not at every step: one more iteration takes the last digits too.
@@ -74,7 +82,9 @@ EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& b
                     advice_for(report.failed->cause)),
         status_of(report.failed->cause));
   }
+  arrive();
   found.velocities.setZero();
+  count_angles_from_shape(model_, found);
   state_ = std::as_const(found);  // copied, not moved: views of the vectors stay valid
   start_anew();
   return report;
@@ -170,6 +180,7 @@ void Simulation::show(const PathPoint& point, std::int64_t index) {
   state_.followed = point.followed;
   state_.step = index;
   state_.time = static_cast<double>(index);
+  count_angles_from_shape(model_, state_);
 }
 
 Vector Simulation::Forces::unbalanced(const Model& model) const {

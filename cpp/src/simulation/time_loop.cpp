@@ -8,7 +8,7 @@
 #include "der/core/error.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
-#include "der/supports/written_turns.hpp"
+#include "der/statics/written_shape.hpp"
 #include "simulation/undo.hpp"
 
 namespace der {
@@ -82,11 +82,17 @@ bool Simulation::enter_step(double end, int newton_iterations) {
 
 void Simulation::enter_writes() {
   if (!energy_monitor_.has_external_writes(state_)) return;
+  const double before = energy_monitor_.energy_before_writes(state_);
   if (energy_monitor_.has_written_shape(state_)) {
-    follow_written(model_, state_);
+    follow_written_shape(state_, {});
     settle_rotations();
   }
-  energy_monitor_.enter_written(state_);
+  energy_monitor_.enter_written(before, state_);
+}
+
+void Simulation::follow_written_shape(State& state, const CancelCallback& beat) const {
+  der::follow_written_shape(model_, *assembler_, *solver_.solver,
+                            energy_monitor_.has_written_angles(state), beat, state);
 }
 
 bool Simulation::has_external_writes() const {

@@ -126,11 +126,21 @@ bool EnergyMonitor::has_external_writes(const State& state) const {
   return has_written_shape(state) || !same_bits(state.velocities, velocities_);
 }
 
-void EnergyMonitor::enter_written(State& state) {
+bool EnergyMonitor::has_written_angles(const State& state) const {
+  const Index first = model_.dofs.num_positions();
+  const Index angles = model_.dofs.num_angles();
+  return !same_bits(state.positions.segment(first, angles), positions_.segment(first, angles));
+}
+
+double EnergyMonitor::energy_before_writes(const State& state) {
   configuration_of(model_, state, here_);
-  const double now = energies(model_, here_, state.velocities).total();
   here_.coordinates = positions_;
-  state.audit.written += now - energies(model_, here_, velocities_).total();
+  return energies(model_, here_, velocities_).total();
+}
+
+void EnergyMonitor::enter_written(double before, State& state) {
+  configuration_of(model_, state, here_);
+  state.audit.written += energies(model_, here_, state.velocities).total() - before;
 }
 
 void EnergyMonitor::after_step(State& state) {

@@ -1,11 +1,16 @@
 #include "der/supports/written_turns.hpp"
 
+#include <cmath>
 #include <vector>
 
+#include "der/core/constants.hpp"
+#include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/kinematics/section_frame.hpp"
 #include "der/model/followed.hpp"
+#include "der/model/frames.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/section_chain.hpp"
 
 namespace der {
 namespace {
@@ -69,6 +74,26 @@ void count_along(const RodMesh& rod, const Model& model, State& state) {
   }
 }
 
+/// Whether a program has turned clamps at rest, so far that frames do not tell the way.
+bool has_turned_clamps_at_once(const Model& model, const State& state) {
+  if (state.last_step > 0.0) return false;
+  bool any = false;
+  for_each_turning_control(model, [&](Index control) {
+    const Ramp* ramp = find_ramp(state, control);
+    any = any || (ramp != nullptr && std::abs(ramp->at(state.time) - ramp->from) > 0.5 * kPi);
+  });
+  return any;
+}
+
+auto frames_in(const Model& model, Vector& followed) {
+  return followed.tail(model.initial_frames.size());
+}
+
+/// The angle [rad] of an edge's section; of none, as beside a clamp, 0.
+double angle_of(Index edge, const Model& model, const State& state) {
+  return edge < 0 ? 0.0 : state.positions[model.framed_edges[to_size(edge)].theta];
+}
+
 }  // namespace
 
 void follow_written(const Model& model, State& state) {
@@ -81,6 +106,70 @@ void follow_written(const Model& model, State& state) {
   follow(model, state.positions, controls, state.followed);
   if (model.dimension != 2) return;
   for (const RodMesh& rod : model.rods) count_along(rod, model, state);
+}
+
+bool lost_angles(const Model& model, const State& state) {
+  Vector controls;
+  evaluate_controls(model, state, state.time, controls);
+  const bool never_moved = state.followed == unwrapped_of_reference(model);
+  return (never_moved && largest_turn_of_clamps(model, controls) > 0.0) ||
+         has_turned_clamps_at_once(model, state) ||
+         turned_too_far(model, state.positions, controls, state.followed) >= 0;
+}
+
+void follow_written_angles(const Model& model, State& state) {
+  const Configuration here = configuration_of(model, state);
+  const bool in_motion = state.last_step > 0.0;
+  if (in_motion && turned_too_far(model, state.positions, here.controls, state.followed) < 0) {
+    return follow(model, state);
+  }
+  const std::vector<SectionChain> chains = section_chains(model);
+  state.followed = unwrapped_of_reference(model);
+  auto frames = frames_in(model, state.followed);
+  lay_frames(model, chains, here, frames);
+  const auto strain_without_reference = [&](const SectionChain::Link& link) {
+    return link.offset(here.controls) + angle_of(link.after, model, state) -
+           angle_of(link.before, model, state);
+  };
+  for (const SectionChain& chain : chains) {
+    if (!chain.has_end()) continue;
+    const SectionChain::Link& end = chain.links.back();
+    double strain = end.vertex->rest.twist;
+    if (chain.links.size() > 1) {
+      const SectionChain::Link& last = chain.links[chain.links.size() - 2];
+      strain += (strain_without_reference(last) + frames[last.twist] - last.vertex->rest.twist) *
+                end.vertex->twist_length / last.vertex->twist_length;
+    }
+    frames[end.twist] = strain - strain_without_reference(end);
+  }
+  follow(model, state);
+}
+
+void count_angles_from_shape(const Model& model, State& state) {
+  if (model.framed_edges.empty()) return;
+  follow(model, state);
+  const Vector old = frames_in(model, state.followed);
+  auto frames = frames_in(model, state.followed);
+  const std::vector<SectionChain> chains = section_chains(model);
+  lay_frames(model, chains, configuration_of(model, state), frames);
+  Vector turned = Vector::Zero(static_cast<Index>(model.framed_edges.size()));
+  const auto turned_at = [&](Index edge) { return edge < 0 ? 0.0 : turned[edge]; };
+  for (const SectionChain& chain : chains) {
+    if (!chain.links.front().leaves_clamp()) {
+      const Index edge = chain.first_edge();
+      turned[edge] = twist_between(reference_frame(edge, frames), reference_frame(edge, old));
+    }
+    for (const SectionChain::Link& link : chain.links) {
+      if (&link == &chain.links.back() && chain.has_end()) break;
+      turned[link.after] = turned_at(link.before) + old[link.twist] - frames[link.twist];
+    }
+  }
+  for (const FramedVertex& vertex : model.framed_vertices) {
+    const Index twist = vertex.twist();
+    frames[twist] = old[twist] + turned_at(vertex.before) - turned_at(vertex.after);
+  }
+  state.positions.segment(model.dofs.angle(0), turned.size()) += turned;
+  follow(model, state);
 }
 
 }  // namespace der

@@ -38,7 +38,7 @@ struct EquilibriumReport {
 };
 
 /// Moves the positions of `state`, with the turns, to a static equilibrium under the loads at its
-/// time. Leaves the state as it is if the search fails, and if the beat ends it.
+/// time; clamps in space begin where its ramps do. Leaves it as it is if the search fails or ends.
 ///
 /// Newton's method comes first. Where it fails, pseudo-transient continuation follows the gradient
 /// flow of the potential. Where that fails, too, the search goes on with load steps, then dynamic

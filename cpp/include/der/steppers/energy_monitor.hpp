@@ -32,10 +32,16 @@ class EnergyMonitor {
   void begin(const State& state);
   /// Whether a program has written positions since the last step.
   [[nodiscard]] bool has_written_shape(const State& state) const;
+  /// Whether angles of sections are among these.
+  [[nodiscard]] bool has_written_angles(const State& state) const;
   /// Whether it has written positions or velocities.
   [[nodiscard]] bool has_external_writes(const State& state) const;
-  /// To be called before a step of a state that was: accumulates the energy of what was written.
-  void enter_written(State& state);
+  /// The energy [J] of a state before a program wrote into it, as long as it follows nothing that
+  /// was written.
+  [[nodiscard]] double energy_before_writes(const State& state);
+  /// To be called before a step of such a state, once it follows what was written: accumulates the
+  /// energy of that.
+  void enter_written(double before, State& state);
   /// To be called after each step: enters a node that has folded over in it. Allocates nothing.
   void after_step(State& state);
   /// Enters the energies of the present state into its audit.

@@ -12,6 +12,7 @@
 #include "der/model/prescribed_motion.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/rigid_motion.hpp"
+#include "der/supports/clamp.hpp"
 #include "statics/equilibrium/dynamic_relaxation.hpp"
 #include "statics/equilibrium/free_spin.hpp"
 #include "statics/equilibrium/load_raising.hpp"
@@ -40,6 +41,16 @@ StaticLoads loads_of(const Model& model, const State& state) {
   StaticLoads loads{here.controls, {}};
   external_force(model, here, state.extra_force, loads.force);
   return loads;
+}
+
+/// The controls at which the shape of a state was found: those of its clamps in space that a
+/// program has set since are where they were. A planar shape tells them itself.
+Vector controls_of_shape(const Model& model, const State& state, Vector controls) {
+  if (model.dimension != 3) return controls;
+  for_each_turning_control(model, [&](Index control) {
+    if (const Ramp* ramp = find_ramp(state, control)) controls[control] = ramp->from;
+  });
+  return controls;
 }
 
 /// An equilibrium that changes no edge by more than this [rad] is near the shape that the search
@@ -100,6 +111,7 @@ class EquilibriumSearch {
         leave_saddles_(options.leave_saddles),
         has_potential_(have_potential),
         loads_(std::move(loads)),
+        start_(controls_of_shape(model, state, loads_.controls)),
         newton_(model, assembler, solver, options.newton,
                 Admissibility(model, loads_.force, state.positions), options.beat),
         stiffness_(model, assembler, solver, options.beat),
@@ -122,7 +134,10 @@ class EquilibriumSearch {
   /// as of a rod that the loads hold, the search begins at the shape as it is.
   void start_without_loads(Shape& shape) {
     Shape found = shape;
-    if (!unloaded_->search(found)) shape = std::move(found);
+    if (!unloaded_->search(found)) {
+      shape = std::move(found);
+      start_ = loads_.controls;
+    }
     report_.newton_iterations = unloaded_->newton_.iterations();
     report_.relaxations = unloaded_->continuation_.steps() + unloaded_->relaxation_steps_;
   }
@@ -133,8 +148,8 @@ class EquilibriumSearch {
       return FailedSearch{EquilibriumFailure::NotHeld, std::move(unheld)};
     }
     const std::vector<double> whole_turns = move_supports(
-        model_, loads_, [this](const auto& loads, Shape& moved) { equilibrate(loads, moved); },
-        shape);
+        model_, loads_, start_,
+        [this](const auto& loads, Shape& moved) { equilibrate(loads, moved); }, shape);
     newton_.measure_drift_from(shape.positions);
     if (auto failed = find_any(shape)) return failed;
     if (auto failed = find_stable(shape)) return failed;
@@ -282,6 +297,7 @@ class EquilibriumSearch {
   const bool leave_saddles_;
   const bool has_potential_;  // of the loads: what goes downhill, and stability, needs one
   const StaticLoads loads_;
+  Vector start_;  // controls at which the shape was found
   StaticNewton newton_;
   Stiffness stiffness_;
   PseudoTransient continuation_;

@@ -41,21 +41,21 @@ Vector present_controls(const Model& model, Vector controls, const Vector& follo
 
 }  // namespace
 
-std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
+std::vector<double> move_supports(const Model& model, const StaticLoads& loads, const Vector& start,
                                   const Equilibrate& equilibrate, Shape& shape) {
   const bool as_drawn =
       shape.positions(model.dofs.free()) == model.initial_positions(model.dofs.free());
   if (as_drawn) shape = {model.initial_positions, unwrapped_of_reference(model)};
-  StaticLoads drawn{reference_controls(model, loads.controls), {}};
-  (as_drawn ? drawn : loads).follow(model, shape);
+  const StaticLoads before{as_drawn ? reference_controls(model, loads.controls) : start, {}};
+  before.follow(model, shape);
 
   const Vector target_controls = loads.at(model, shape).controls;
   Vector target = shape.positions;
   apply_prescribed_motion(model, target_controls, target);
   const Vector displacement = target - shape.positions;
+  const Vector controls = before.at(model, shape).controls;
   const Vector rotation =
-      target_controls - (as_drawn ? reference_controls(model, target_controls)
-                                  : present_controls(model, target_controls, shape.followed));
+      target_controls - (as_drawn ? controls : present_controls(model, controls, shape.followed));
   const double longest = kLargestStep / std::max(largest_edge_change(model, displacement),
                                                  rotation.lpNorm<Eigen::Infinity>());
   std::vector<double> whole_turns;

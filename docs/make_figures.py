@@ -241,9 +241,8 @@ def hanging_coil() -> Figure:
 
 
 def spun_strip() -> Figure:
-    """Draw the strip at two instants, from the side and from above: its section as it lies."""
-    result = der.run(CONFIGS / "spun_strip.yaml")
-    return result.plot("shapes", times=[1.0, 1.5], views=["xz", "xy"])
+    """Draw the strip at two instants: its section as it lies."""
+    return der.run(CONFIGS / "spun_strip.yaml").plot("shapes", times=[1.0, 1.5])
 
 
 def helical_buckling() -> Figure:
@@ -269,8 +268,8 @@ def helical_buckling() -> Figure:
 
 
 def twisted_ring() -> Figure:
-    """Draw a ring that leaves its plane, from above and from the side."""
-    return der.run(CONFIGS / "twisted_ring.yaml").plot(views=["xy", "xz"])
+    """Draw a ring that leaves its plane."""
+    return der.run(CONFIGS / "twisted_ring.yaml").plot(times=[0.0, 0.056, 0.07])
 
 
 def tutorial_falling_rod() -> Figure:
@@ -407,6 +406,48 @@ def symbols() -> Figure:
     return der.run(scene).plot("shapes")
 
 
+def symbols_in_space() -> Figure:
+    """Draw the symbols of supports and loads of rods in space."""
+    bar = {
+        "nodes": 31,
+        "cross_section": {
+            "rectangle": {"width": 0.045, "height": 0.015},
+            "director": [0, 1, 0],
+        },
+        "material": {"youngs_modulus": 1e9, "poissons_ratio": 0.3, "density": 1000},
+    }
+    scene = {
+        "title": "Symbols of supports and loads in space",
+        "rods": [
+            {"name": "near", "from": [0, 0, 0], "to": [1, 0, 0], **bar},
+            {"name": "far", "from": [0, 0.5, 0], "to": [1, 0.5, 0.2], **bar},
+        ],
+        "supports": [
+            {"rod": "near", "at": "start", "clamp": True},
+            {"rod": "near", "at": "end", "spring": {"stiffness": [0, 0, 300]}},
+            {"rod": "far", "at": "start", "fix": ["x", "y", "z"]},
+            {"rod": "far", "at": "end", "fix": ["y", "z"]},
+            {"rod": "far", "at": "middle", "spring": {"rotational_stiffness": 1}},
+        ],
+        "loads": [
+            {"gravity": [0, 0, -9.81]},
+            {"point_force": {"rod": "near", "at": 0.4, "force": [0, 10, -20]}},
+            {"moment": {"rod": "near", "at": 0.7, "moment": [3, 0, 0]}},
+            {
+                "distributed_force": {
+                    "rod": "far",
+                    "from": 0.3,
+                    "to": 0.7,
+                    "force": [0, 0, -20],
+                }
+            },
+            {"point_force": {"rod": "far", "at": "end", "force": [50, 0, 0]}},
+        ],
+        "analysis": "static",
+    }
+    return der.run(scene).plot("shapes")
+
+
 def finger_traces(path: Path) -> None:
     """Write an animation of the finger of the fourth tutorial, with feedback."""
     controlled = finger.run(finger.Feedback(finger.Inverse()))
@@ -497,6 +538,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         tutorial_fitting,
         data_flow,
         symbols,
+        symbols_in_space,
     )
 }
 # Figures whose function writes the file itself, with the ending of the file.

@@ -2,9 +2,9 @@
 
     python docs/make_figures.py [NAME...]
 
-Writes docs/images/NAME.png for each NAME, or for all of them. finger_learned, finger_traces and
-swinging are GIFs. What has been learned takes gymnasium, and view, a screenshot, takes Chromium and
-selenium: without them these pictures are left as they are.
+Writes docs/images/NAME.png for each NAME, or for all of them. finger_learned, finger_traces,
+gripper and swinging are GIFs. What has been learned takes gymnasium, and view, a screenshot, takes
+Chromium and selenium: without them these pictures are left as they are.
 """
 
 from __future__ import annotations
@@ -462,6 +462,51 @@ def finger_learned(path: Path) -> None:
     learning.replay(learning.run(learned)).animate(path, fps=10)
 
 
+def gripper_scene() -> dict[str, Any]:
+    """Return the scene of a gripper of four fingers, each with a chamber, that close and open."""
+    fingers = []
+    for angle in np.linspace(0.0, 2.0 * np.pi, 4, endpoint=False):
+        out, across = [np.cos(angle), np.sin(angle), 0.0], [-np.sin(angle), np.cos(angle), 0.0]
+        fingers.append((np.array(out), across))
+    curvature = {"times": [0, 0.6, 1.2], "values": [0, 14, 0], "smooth": True}
+    return {
+        "title": "A gripper of four soft fingers closes and opens",
+        "rods": [
+            {
+                "name": f"finger_{number}",
+                "nodes": 25,
+                "from": (0.03 * out + [0, 0, 0.1]).tolist(),
+                "to": (0.05 * out).tolist(),
+                "cross_section": {"circle": {"radius": 0.005}, "director": across},
+                "material": {"youngs_modulus": 1e6, "poissons_ratio": 0.45, "density": 1000},
+            }
+            for number, (out, across) in enumerate(fingers)
+        ],
+        "supports": [
+            {"rod": f"finger_{number}", "at": "start", "clamp": True} for number in range(4)
+        ],
+        "actuation": [
+            {
+                "name": f"chamber_{number}",
+                "rod": f"finger_{number}",
+                "from": 0.02,
+                "to": 0.08,
+                "natural_curvature": [curvature, 0],
+            }
+            for number in range(4)
+        ],
+        "loads": [{"gravity": [0, 0, -9.81]}, {"damping": {"coefficient": 0.05}}],
+        "start_from": "equilibrium",
+        "time": {"duration": 1.2, "step": 0.005},
+        "output": {"every": 0.02},
+    }
+
+
+def gripper(path: Path) -> None:
+    """Write the animation of the start page: a gripper at half its speed."""
+    der.run(gripper_scene()).animate(path, speed=0.5, fps=12.5)
+
+
 def swinging(path: Path) -> None:
     """Write an animation of the swinging rod at half its speed."""
     der.run(SWING).animate(path, speed=0.5)
@@ -545,6 +590,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
 FILES: dict[str, tuple[str, Callable[[Path], None]]] = {
     "finger_learned": (".gif", finger_learned),
     "finger_traces": (".gif", finger_traces),
+    "gripper": (".gif", gripper),
     "swinging": (".gif", swinging),
     "view": (".png", view),
 }

@@ -342,7 +342,7 @@ def _gif_palette(pictures: Iterator[Pixels]) -> Image.Image:
     few = np.rint(255.0 * np.array(meant)).astype(np.uint8)
     bands = np.repeat(few, len(drawn) // 100, axis=0)[:, None].repeat(drawn.shape[1], axis=1)
     together = Image.fromarray(np.concatenate([drawn, bands]))
-    found = together.quantize(128, method=Image.Quantize.MEDIANCUT)
+    found = together.quantize(256, method=Image.Quantize.MEDIANCUT)
     tones = np.array(found.getpalette()).reshape(-1, 3)
     # Nothing but white is close to white, or Pillow would take one for the other.
     tones[tones.min(axis=1) > 246] = 255

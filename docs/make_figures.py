@@ -466,8 +466,7 @@ def gripper_scene() -> dict[str, Any]:
     """Return the scene of a gripper of four fingers, each with a chamber, that close and open."""
     fingers = []
     for angle in np.linspace(0.0, 2.0 * np.pi, 4, endpoint=False):
-        out, across = [np.cos(angle), np.sin(angle), 0.0], [-np.sin(angle), np.cos(angle), 0.0]
-        fingers.append((np.array(out), across))
+        fingers.append(np.array([np.cos(angle), np.sin(angle), 0.0]))  # the way out
     curvature = {"times": [0, 0.6, 1.2], "values": [0, 14, 0], "smooth": True}
     return {
         "title": "A gripper of four soft fingers closes and opens",
@@ -477,10 +476,10 @@ def gripper_scene() -> dict[str, Any]:
                 "nodes": 25,
                 "from": (0.03 * out + [0, 0, 0.1]).tolist(),
                 "to": (0.05 * out).tolist(),
-                "cross_section": {"circle": {"radius": 0.005}, "director": across},
+                "cross_section": {"circle": {"radius": 0.005}, "director": (-out).tolist()},
                 "material": {"youngs_modulus": 1e6, "poissons_ratio": 0.45, "density": 1000},
             }
-            for number, (out, across) in enumerate(fingers)
+            for number, out in enumerate(fingers)
         ],
         "supports": [
             {"rod": f"finger_{number}", "at": "start", "clamp": True} for number in range(4)

@@ -2,9 +2,9 @@
 
     python docs/make_figures.py [NAME...]
 
-Writes docs/images/NAME.png for each NAME, or for all of them. finger_learned, finger_traces and
-swinging are GIFs. What has been learned takes gymnasium, and view and notebook, two screenshots,
-take Chromium and selenium: without them these pictures are left as they are.
+Writes docs/images/NAME.png for each NAME, or for all of them. finger_learned, finger_traces,
+gripper and swinging are GIFs. What has been learned takes gymnasium, and view and notebook, two
+screenshots, take Chromium and selenium: without them these pictures are left as they are.
 """
 
 from __future__ import annotations
@@ -250,9 +250,8 @@ def hanging_coil() -> Figure:
 
 
 def spun_strip() -> Figure:
-    """Draw the strip at two instants, from the side and from above: its section as it lies."""
-    result = der.run(CONFIGS / "spun_strip.yaml")
-    return result.plot("shapes", times=[1.0, 1.5], views=["xz", "xy"])
+    """Draw the strip at two instants: its section as it lies."""
+    return der.run(CONFIGS / "spun_strip.yaml").plot("shapes", times=[1.0, 1.5])
 
 
 def helical_buckling() -> Figure:
@@ -278,8 +277,8 @@ def helical_buckling() -> Figure:
 
 
 def twisted_ring() -> Figure:
-    """Draw a ring that leaves its plane, from above and from the side."""
-    return der.run(CONFIGS / "twisted_ring.yaml").plot(views=["xy", "xz"])
+    """Draw a ring that leaves its plane."""
+    return der.run(CONFIGS / "twisted_ring.yaml").plot(times=[0.0, 0.056, 0.07])
 
 
 def tutorial_falling_rod() -> Figure:
@@ -416,6 +415,48 @@ def symbols() -> Figure:
     return der.run(scene).plot("shapes")
 
 
+def symbols_in_space() -> Figure:
+    """Draw the symbols of supports and loads of rods in space."""
+    bar = {
+        "nodes": 31,
+        "cross_section": {
+            "rectangle": {"width": 0.045, "height": 0.015},
+            "director": [0, 1, 0],
+        },
+        "material": {"youngs_modulus": 1e9, "poissons_ratio": 0.3, "density": 1000},
+    }
+    scene = {
+        "title": "Symbols of supports and loads in space",
+        "rods": [
+            {"name": "near", "from": [0, 0, 0], "to": [1, 0, 0], **bar},
+            {"name": "far", "from": [0, 0.5, 0], "to": [1, 0.5, 0.2], **bar},
+        ],
+        "supports": [
+            {"rod": "near", "at": "start", "clamp": True},
+            {"rod": "near", "at": "end", "spring": {"stiffness": [0, 0, 300]}},
+            {"rod": "far", "at": "start", "fix": ["x", "y", "z"]},
+            {"rod": "far", "at": "end", "fix": ["y", "z"]},
+            {"rod": "far", "at": "middle", "spring": {"rotational_stiffness": 1}},
+        ],
+        "loads": [
+            {"gravity": [0, 0, -9.81]},
+            {"point_force": {"rod": "near", "at": 0.4, "force": [0, 10, -20]}},
+            {"moment": {"rod": "near", "at": 0.7, "moment": [3, 0, 0]}},
+            {
+                "distributed_force": {
+                    "rod": "far",
+                    "from": 0.3,
+                    "to": 0.7,
+                    "force": [0, 0, -20],
+                }
+            },
+            {"point_force": {"rod": "far", "at": "end", "force": [50, 0, 0]}},
+        ],
+        "analysis": "static",
+    }
+    return der.run(scene).plot("shapes")
+
+
 def finger_traces(path: Path) -> None:
     """Write an animation of the finger of the fourth tutorial, with feedback."""
     controlled = finger.run(finger.Feedback(finger.Inverse()))
@@ -428,6 +469,50 @@ def finger_learned(path: Path) -> None:
 
     learned = learning.load(DOCS / "tutorials" / "learning.json")
     learning.replay(learning.run(learned)).animate(path, fps=10)
+
+
+def gripper_scene() -> dict[str, Any]:
+    """Return the scene of a gripper of four fingers, each with a chamber, that close and open."""
+    fingers = []
+    for angle in np.linspace(0.0, 2.0 * np.pi, 4, endpoint=False):
+        fingers.append(np.array([np.cos(angle), np.sin(angle), 0.0]))  # the way out
+    curvature = {"times": [0, 0.6, 1.2], "values": [0, 14, 0], "smooth": True}
+    return {
+        "title": "A gripper of four soft fingers closes and opens",
+        "rods": [
+            {
+                "name": f"finger_{number}",
+                "nodes": 25,
+                "from": (0.03 * out + [0, 0, 0.1]).tolist(),
+                "to": (0.05 * out).tolist(),
+                "cross_section": {"circle": {"radius": 0.005}, "director": (-out).tolist()},
+                "material": {"youngs_modulus": 1e6, "poissons_ratio": 0.45, "density": 1000},
+            }
+            for number, out in enumerate(fingers)
+        ],
+        "supports": [
+            {"rod": f"finger_{number}", "at": "start", "clamp": True} for number in range(4)
+        ],
+        "actuation": [
+            {
+                "name": f"chamber_{number}",
+                "rod": f"finger_{number}",
+                "from": 0.02,
+                "to": 0.08,
+                "natural_curvature": [curvature, 0],
+            }
+            for number in range(4)
+        ],
+        "loads": [{"gravity": [0, 0, -9.81]}, {"damping": {"coefficient": 0.05}}],
+        "start_from": "equilibrium",
+        "time": {"duration": 1.2, "step": 0.005},
+        "output": {"every": 0.02},
+    }
+
+
+def gripper(path: Path) -> None:
+    """Write the animation of the start page: a gripper at half its speed."""
+    der.run(gripper_scene()).animate(path, speed=0.5, fps=12.5)
 
 
 def swinging(path: Path) -> None:
@@ -521,12 +606,14 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         tutorial_fitting,
         data_flow,
         symbols,
+        symbols_in_space,
     )
 }
 # Figures whose function writes the file itself, with the ending of the file.
 FILES: dict[str, tuple[str, Callable[[Path], None]]] = {
     "finger_learned": (".gif", finger_learned),
     "finger_traces": (".gif", finger_traces),
+    "gripper": (".gif", gripper),
     "swinging": (".gif", swinging),
     "view": (".png", view),
     "notebook": (".png", notebook),

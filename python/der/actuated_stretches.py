@@ -67,11 +67,13 @@ class ActuatedStretch:
     def shares(self) -> Array:
         """Values against the largest of all frames, from -1 to 1, shape (frames,).
 
-        Those of two curvatures are from 0 to 1; they are 0 where none acts at any frame.
+        Where none is positive they are turned round: negative are those against others. Those of
+        two curvatures are from 0 to 1; they are 0 where none acts at any frame.
         """
         sizes = np.linalg.norm(self.values, axis=1) if self.values.ndim > 1 else self.values
         largest = float(np.abs(sizes).max(initial=0.0))
-        return np.asarray(sizes / largest if largest > 0.0 else 0.0 * sizes)
+        largest = largest if np.any(sizes > 0.0) else -largest
+        return np.asarray(sizes / largest if largest != 0.0 else 0.0 * sizes)
 
     def profile_at(self, arc_lengths: Array) -> Array:
         """Return the profile, from 0 to 1, at arc lengths [m]: 0 outside, and not at the ends."""

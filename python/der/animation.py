@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,11 +13,14 @@ from numpy.typing import NDArray
 
 from der.film import Film, make_film, round_speed, speed_text, title_of
 from der.progress import ProgressFunction
+from der.scene_loads import ActingLoads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from PIL import Image
 
     from der.plotting.picture import Picture
+    from der.plotting.shapes import Shape
     from der.run_data import RunData
 
 Array = NDArray[np.float64]
@@ -30,18 +33,21 @@ _DPI = 110
 _WIDTH = 7.2  # of the picture [inch]
 _HEIGHT = (2.2, 7.0)  # least and most [inch]
 _MARGINS = (0.75, 0.2, 0.68, 0.55)  # left, right, top, bottom [inch] with a title of one line
+_NARROW_MARGINS = (0.1, 0.1, 0.68, 0.05)  # without numbers at the axes
 _TITLE_LINE = 0.2  # that each further line takes [inch]
+_ENTRIES = 4  # of the legend in a row
 _MAX_FRAMES = 20_000
 _CENTISECONDS = 100.0  # a GIF counts time in them ...
 _SHORTEST = 2  # ... and viewers slow down what is shorter than so many
-_GIF_TONES = 256  # of all colours of a picture, between each and white
+_GIF_SAMPLES = 5  # pictures of which it takes its colours
 
 
 @dataclass(frozen=True, eq=False)
 class _Cut:
-    """The pictures to draw: positions, the film's frame they belong to, and what is written."""
+    """The pictures to draw: shapes, the result's frame they belong to, and what is written."""
 
     positions: Array
+    directors: list[Array | None]
     frames: NDArray[np.int64]
     texts: list[str]
     fps: float
@@ -97,17 +103,20 @@ def animate(
     if speed is not None and not 0.0 < speed < np.inf:
         raise ValueError(f"speed must be a positive number, not {speed:g}")
     gif = path.suffix.lower() == ".gif"
-    from der.plotting.picture import Picture  # here, because matplotlib takes long to load
+    from der.plotting.space import make_picture  # here, because matplotlib takes long to load
+    from der.plotting.style import style
 
-    picture = Picture(result)
-    film = make_film(result)
-    turned = replace(film, positions=picture.plane.turned(film.positions))
-    cut = _cut(result, turned, _gif_rate(fps) if gif else fps, speed)
-    pictures = _draw(picture, cut, progress)
+    picture = make_picture(result)
+    cut = _cut(result, make_film(result), _gif_rate(fps) if gif else fps, speed)
+    with style():
+        stage = _set_stage(picture, cut)
+    pictures = _draw(stage, picture, cut, range(len(cut.texts)), progress)
     partial = path.with_name(f".{path.stem}.partial{path.suffix}")
     try:
         if gif:
-            _write_gif(pictures, partial, cut.fps, _gif_palette(len(picture.actuated)))
+            few = np.linspace(0, len(cut.texts) - 1, _GIF_SAMPLES).astype(np.int64)
+            palette = _gif_palette(_draw(stage, picture, cut, few.tolist()))
+            _write_gif(pictures, partial, cut.fps, palette)
         else:
             _write_mp4(pictures, partial, cut.fps)
         partial.replace(path)
@@ -137,7 +146,8 @@ def _cut(result: RunData, film: Film, fps: float, speed: float | None) -> _Cut:
         for chapter in film.chapters
         if chapter.first <= frame <= chapter.last
     ]
-    return _Cut(film.positions[frames], frames, texts, fps)
+    directors = [one if one is None else one[frames % len(one)] for one in film.directors]
+    return _Cut(film.positions[frames], directors, film.source[frames], texts, fps)
 
 
 def _frames_without_time(film: Film, fps: float) -> NDArray[np.int64]:
@@ -170,22 +180,34 @@ def _cut_motion(film: Film, times: Array, fps: float, speed: float | None) -> _C
     right = np.clip(np.searchsorted(times, instants), 1, len(times) - 1)
     share = (instants - times[right - 1]) / (times[right] - times[right - 1])
     weight = share[:, np.newaxis, np.newaxis]
-    positions = (1.0 - weight) * film.positions[right - 1] + weight * film.positions[right]
+
+    def between(frames: Array) -> Array:
+        if len(frames) == 1:  # the same at all times
+            return np.broadcast_to(frames, (count, *frames.shape[1:]))
+        mixed: Array = (1.0 - weight) * frames[right - 1] + weight * frames[right]
+        return mixed
+
+    directors = [one if one is None else between(one) for one in film.directors]
     frames = np.where(share < 0.5, right - 1, right)
     decimals = int(np.clip(np.ceil(-np.log10(step)), 0, 12))
     note = "" if speed == 1.0 else f"   (shown at {speed_text(speed)})"
     texts = [f"t = {instant:.{decimals}f} s{note}" for instant in instants]
-    return _Cut(positions, frames, texts, fps)
+    return _Cut(between(film.positions), directors, frames, texts, fps)
 
 
-def _draw(picture: Picture, cut: _Cut, progress: ProgressFunction | None) -> Iterator[Pixels]:
-    """Draw one picture after the other, RGB, shape (height, width, 3), with even sizes."""
+def _draw(
+    axes: Axes,
+    picture: Picture,
+    cut: _Cut,
+    numbers: Sequence[int],
+    progress: ProgressFunction | None = None,
+) -> Iterator[Pixels]:
+    """Draw some of the pictures, RGB, shape (height, width, 3), with even sizes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     from der.plotting.style import style
 
     with style():
-        axes = _set_stage(picture, cut)
         figure = axes.get_figure(root=True)
         assert figure is not None
         canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its methods without types
@@ -193,38 +215,37 @@ def _draw(picture: Picture, cut: _Cut, progress: ProgressFunction | None) -> Ite
         # The parts that do not change are drawn once.
         background = canvas.copy_from_bbox(figure.bbox)
         fixed = set(axes.get_children())
-        for number, (positions, frame, text) in enumerate(
-            zip(cut.positions, cut.frames, cut.texts, strict=True)
-        ):
+        for done, number in enumerate(numbers, 1):
             canvas.restore_region(background)
-            _draw_moment(axes, picture, positions, int(frame), text)
+            shape = _shape(cut, number)
+            picture.draw(axes, [shape], shape, _loads(picture, shape))
+            text = cut.texts[number]
+            axes.annotate(
+                text, (0.0, 1.0), (0.0, 6.0), "axes fraction", "offset points", fontsize=11
+            )
             moving = [artist for artist in axes.get_children() if artist not in fixed]
             for artist in sorted(moving, key=lambda artist: artist.get_zorder()):
                 axes.draw_artist(artist)
                 artist.remove()
             yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
             if progress is not None:
-                progress((number + 1) / len(cut.texts))
+                progress(done / len(numbers))
 
 
-def _draw_moment(axes: Axes, picture: Picture, positions: Array, frame: int, text: str) -> None:
-    from der.plotting.actuation import draw_actuation
-    from der.plotting.loads import draw_loads
-    from der.plotting.shapes import draw_shapes
+def _shape(cut: _Cut, number: int) -> Shape:
+    from der.plotting.shapes import Shape
     from der.plotting.style import PALETTE
-    from der.plotting.supports import draw_springs, draw_supports
 
-    result, rods = picture.result, picture.rods
-    source = min(frame, len(result.times) - 1)
-    half_widths = picture.half_widths(source, positions)
-    draw_shapes(axes, rods, positions, PALETTE[0], half_widths=half_widths)
-    draw_actuation(axes, rods, picture.actuated, source, positions)
-    draw_supports(axes, rods, picture.held_nodes(source), positions)
-    draw_springs(axes, rods, picture.springs, positions)
-    if result.modes is None and result.buckling is None:
-        loads = replace(picture.loads(source), gravity=None)  # stands in the legend
-        draw_loads(axes, rods, loads, positions)
-    axes.annotate(text, (0.0, 1.0), (0.0, 6.0), "axes fraction", "offset points", fontsize=11)
+    directors = [one if one is None else one[number] for one in cut.directors]
+    return Shape(cut.positions[number], int(cut.frames[number]), PALETTE[0], None, directors)
+
+
+def _loads(picture: Picture, shape: Shape) -> ActingLoads:
+    """Return the loads to draw at a shape: gravity stands in the legend, modes have no loads."""
+    loads = picture.loads(shape.frame)
+    if picture.result.scenario.analysis in ("modes", "buckling"):
+        return ActingLoads(foundations=loads.foundations)
+    return replace(loads, gravity=None)
 
 
 def _set_stage(picture: Picture, cut: _Cut) -> Axes:
@@ -232,15 +253,16 @@ def _set_stage(picture: Picture, cut: _Cut) -> Axes:
     from matplotlib.figure import Figure
 
     from der.plotting.actuation import add_actuation_to_legend
-    from der.plotting.loads import draw_loads
     from der.plotting.style import FIGURE_TITLE, wrapped
-    from der.scene_loads import ActingLoads
 
-    low, high = _extent(picture, cut)
-    left, right, top, bottom = _MARGINS
+    left, right, top, bottom = _MARGINS if picture.has_axes else _NARROW_MARGINS
     room = _WIDTH - left - right  # for the axes
     title = wrapped(title_of(picture.result), FIGURE_TITLE, room)
-    top += _TITLE_LINE * (len(title) - 1)
+    gravity = picture.loads(0).gravity
+    entries = len(picture.actuated) + (gravity is not None)
+    rows = int(np.ceil(entries / _ENTRIES)) if entries > 1 else 0  # of the legend, above the time
+    top += _TITLE_LINE * (len(title) - 1 + rows)
+    low, high = _extent(picture, cut, (room, _HEIGHT[1] - top - bottom))
     size = high - low
     height = float(np.clip(room * size[1] / size[0] + top + bottom, *_HEIGHT))
     height = 2.0 * round(0.5 * height * _DPI) / _DPI  # MP4 takes even numbers of pixels
@@ -252,7 +274,7 @@ def _set_stage(picture: Picture, cut: _Cut) -> Axes:
     middle = 0.5 * (low + high)
     axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
     axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-    picture.label(axes, low, high)
+    picture.finish(axes, low, high, scale / 72.0)
     figure.suptitle(
         "\n".join(title),
         x=left / _WIDTH,
@@ -261,38 +283,39 @@ def _set_stage(picture: Picture, cut: _Cut) -> Axes:
         va="top",
         parse_math=False,
     )
-    gravity = picture.loads(0).gravity
     if gravity is not None:
-        draw_loads(axes, picture.rods, ActingLoads(gravity=gravity), cut.positions[0])
+        picture.add_gravity(axes, gravity)
     add_actuation_to_legend(axes, picture.actuated)
-    entries = len(picture.actuated) + (gravity is not None)
     if entries:
-        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=entries)
+        above = 1.0 + (_TITLE_LINE / (height - top - bottom) if rows else 0.0)
+        axes.legend(
+            loc="lower right",
+            bbox_to_anchor=(1.0, above),
+            borderaxespad=0.1,
+            ncols=min(entries, _ENTRIES),
+        )
     return axes
 
 
-def _extent(picture: Picture, cut: _Cut) -> tuple[Array, Array]:
+def _extent(picture: Picture, cut: _Cut, room: tuple[float, float]) -> tuple[Array, Array]:
     """Return the corners [m] of all that is drawn, with some room around it."""
-    from der.plotting.loads import room_for_loads
-    from der.plotting.shapes import limits
+    shapes = [_shape(cut, number) for number in range(len(cut.texts))]
+    some = np.unique(np.linspace(0, len(shapes) - 1, 20).astype(np.int64))
+    found = [picture.corners(shapes, ActingLoads(), room)]
+    found += [picture.corners([shapes[n]], _loads(picture, shapes[n]), room) for n in some]
+    corners = np.array(found)
+    low, high = corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)
+    if picture.has_axes:  # for the symbols of supports
+        size, point = float(np.max(high - low)), float(np.max((high - low) / room)) / 72.0
+        more = max(0.05 * size, 20.0 * point)
+        low, high = low - more, high + more
+    return low, high
 
-    low, high = limits(picture.rods, list(cut.positions))
-    point = float(np.max(high - low)) / (72.0 * (_WIDTH - 1.0))
-    corners = [low, high]
-    for number in np.unique(np.linspace(0, len(cut.frames) - 1, 20).astype(np.int64)):
-        loads = picture.loads(min(int(cut.frames[number]), len(picture.result.times) - 1))
-        corners.extend(room_for_loads(picture.rods, loads, cut.positions[number], point))
-    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
-    room = max(0.05 * float(np.max(high - low)), 20.0 * point)  # for the symbols of supports
-    return low - room, high + room
 
-
-def _write_gif(pictures: Iterator[Pixels], path: Path, fps: float, tones: list[int]) -> None:
+def _write_gif(pictures: Iterator[Pixels], path: Path, fps: float, palette: Image.Image) -> None:
     from PIL import Image
 
     # One palette for all, without dithering: quick, small, and colours that do not flicker.
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(tones)
     images = (
         Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
         for picture in pictures
@@ -306,20 +329,25 @@ def _write_gif(pictures: Iterator[Pixels], path: Path, fps: float, tones: list[i
     )
 
 
-def _gif_palette(actuations: int) -> list[int]:
-    """Return red, green and blue of the colours that pictures are made of, and of their tones."""
+def _gif_palette(pictures: Iterator[Pixels]) -> Image.Image:
+    """Return the colours that some pictures are made of."""
     from matplotlib.colors import to_rgb
+    from PIL import Image
 
-    from der.plotting.style import ACTUATED, LOAD, MUTED, PALETTE, actuated_colour
+    from der.plotting.style import ACTUATED, LOAD, MUTED, PALETTE
 
-    colours = [to_rgb(colour) for colour in (PALETTE[0], LOAD, MUTED, "black")]
-    for number in range(min(actuations, len(ACTUATED))):
-        colours += [actuated_colour(number, share) for share in (1.0, -1.0)]
-    # Nothing close to white, or Pillow would take it for white.
-    count = _GIF_TONES // len(colours)
-    tones = np.append(np.linspace(0.0, 0.94, count - 1), 1.0)[:, np.newaxis]
-    mixed = np.vstack([tones + (1.0 - tones) * np.array(colour) for colour in colours])
-    return [int(value) for value in np.rint(255.0 * mixed).ravel()]
+    drawn = np.concatenate(list(pictures))
+    # What has a meaning counts, however few pixels it has.
+    meant = [to_rgb(colour) for colour in (PALETTE[0], LOAD, MUTED, "black", *ACTUATED)]
+    few = np.rint(255.0 * np.array(meant)).astype(np.uint8)
+    bands = np.repeat(few, len(drawn) // 100, axis=0)[:, None].repeat(drawn.shape[1], axis=1)
+    together = Image.fromarray(np.concatenate([drawn, bands]))
+    found = together.quantize(256, method=Image.Quantize.MEDIANCUT)
+    tones = np.array(found.getpalette()).reshape(-1, 3)
+    # Nothing but white is close to white, or Pillow would take one for the other.
+    tones[tones.min(axis=1) > 246] = 255
+    found.putpalette(tones.ravel().tolist())
+    return found
 
 
 def _write_mp4(pictures: Iterator[Pixels], path: Path, fps: float) -> None:

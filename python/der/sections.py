@@ -39,6 +39,11 @@ class Section:
     height: float
     outline: Array
 
+    @property
+    def is_round(self) -> bool:
+        """Whether it is a circle or an ellipse, not a rectangle."""
+        return len(self.outline) == _SIDES
+
 
 def section_of(cross_section: Mapping[str, Any]) -> Section | None:
     """Return the outline of a ``cross_section`` of a scene; None where it gives stiffnesses."""
@@ -209,19 +214,3 @@ def swept(line: Array, directors: Array | None, outline: Array) -> Array:
     offsets += (stretch[:, None] * along)[:, :, None] * turn[:, None, :]
     corners: Array = line[:, None, :] + offsets
     return corners
-
-
-def seen_half_widths(line: Array, directors: Array | None, outline: Array) -> Array:
-    """Return how far a rod reaches to each side of its line in a picture [m], shape (nodes,).
-
-    Parameters
-    ----------
-    line, directors, outline
-        As in `swept`, with components to the right, upwards and towards the viewer.
-    """
-    first, second = section_axes(line, directors)
-    along = tangents_of(line)[:, :2]
-    sizes = np.linalg.norm(along, axis=1, keepdims=True)
-    across = np.column_stack([-along[:, 1], along[:, 0]]) / np.maximum(sizes, 1e-12)
-    reach = np.stack([np.sum(axis[:, :2] * across, axis=1) for axis in (first, second)])
-    return np.asarray(np.abs(outline @ reach).max(axis=0))

@@ -5,7 +5,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from der.actuated_stretches import actuated_stretches
-from der.animation import _gif_palette
 from der.plotting.style import ACTUATED, actuated_colour
 from der.viewing.payload import make_payload
 from matplotlib.colors import to_rgb
@@ -99,17 +98,43 @@ def test_bands_lie_on_their_part_of_the_rod(bent):
         place = [np.interp(at, rod.arc_lengths, column) for column in result.positions[-1].T]
         assert point == pytest.approx(place)
     colours = band(axes).get_colors()[:, :3]
-    assert colours == pytest.approx(np.tile(actuated_colour(0, -1.0), (len(pieces), 1)))
+    assert colours == pytest.approx(np.tile(actuated_colour(0, negative=True), (len(pieces), 1)))
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
     assert labels[-1] == "bend: curvature -2 1/m"
 
 
-def test_colours_tell_size_and_sign():
+def test_colours_tell_the_sign():
     full = np.array(to_rgb(ACTUATED[1]))
-    assert actuated_colour(1, 1.0) == pytest.approx(full)
-    assert np.all(np.array(actuated_colour(1, 0.3)) > full)
-    assert np.all(np.array(actuated_colour(1, -1.0)) < full + 1e-9)
-    assert actuated_colour(1 + len(ACTUATED), 1.0) == pytest.approx(full)
+    assert actuated_colour(1, negative=False) == pytest.approx(full)
+    assert np.all(np.array(actuated_colour(1, negative=True)) < full + 1e-9)
+    assert actuated_colour(1 + len(ACTUATED), negative=False) == pytest.approx(full)
+
+
+def test_what_is_never_positive_has_the_full_colour(bent):
+    """The sign tells something only where both occur."""
+    bent["actuation"][0]["natural_curvature"] = {"times": [0, 0.2], "values": [0, -2]}
+    (bend,) = actuated_stretches(der.run(bent))
+    assert bend.shares[[0, -1]] == pytest.approx([0.0, 1.0])
+
+
+def test_widths_tell_the_value_in_the_picture_and_in_the_legend(bent):
+    """From 0 to half the largest value the band grows as much as from there to the largest."""
+    del bent["actuation"][0]["from"], bent["actuation"][0]["to"]
+    bent["actuation"][0]["natural_curvature"] = {"times": [0, 0.2], "values": [0, 2]}
+    widths = []
+    for time in (0.0, 0.1, 0.2):
+        axes = der.run(bent).plot("shapes", times=[time]).axes[0]
+        (line,) = (
+            one
+            for one in axes.lines
+            if one.get_gid() == "actuation-bend" and not len(one.get_xdata())
+        )
+        assert set(band(axes).get_linewidths()) == {line.get_linewidth()}
+        assert band(axes).get_colors()[0, :3] == pytest.approx(to_rgb(line.get_color()))
+        widths.append(line.get_linewidth())
+    assert widths[0] > 0.0
+    assert widths[1] - widths[0] == pytest.approx(widths[2] - widths[1])
+    assert widths[2] > 2.0 * widths[0]
 
 
 def test_bands_that_overlap_are_as_many_widths(bent):
@@ -129,7 +154,7 @@ def test_equilibria_and_modes_have_bands(bent, analysis):
 
 
 def test_animations_show_when_it_acts(bent, tmp_path):
-    """Pink only once the value is near its largest, which is positive here."""
+    """There is the more pink the larger the value is."""
     bent["actuation"][0]["natural_curvature"] = {"times": [0.1, 0.2], "values": [0, 2]}
     path = der.run(bent).animate(tmp_path / "bend.gif", fps=10, speed=0.1)
     pink = []
@@ -138,20 +163,10 @@ def test_animations_show_when_it_acts(bent, tmp_path):
             image.seek(number)
             # The legend, above the axes, is left out.
             pixels = np.asarray(image.convert("RGB")).astype(int)[90:]
-            off = np.abs(pixels - 255 * np.array(actuated_colour(0, 1.0))).max(axis=2)
+            off = np.abs(pixels - 255 * np.array(actuated_colour(0, negative=False))).max(axis=2)
             pink.append(int(np.sum(off < 12)))
-    assert pink[0] == 0
     assert pink[1] > 500
-
-
-def test_palettes_of_gifs_have_the_colours():
-    for actuations in (0, 1, 9):
-        colours = np.reshape(_gif_palette(actuations), (-1, 3))
-        assert 200 <= len(colours) <= 256
-        for number in range(min(actuations, len(ACTUATED))):
-            for share in (1.0, -1.0):
-                wanted = 255 * np.array(actuated_colour(number, share))
-                assert np.abs(colours - wanted).max(axis=1).min() <= 1
+    assert pink[1] > 2 * pink[0]
 
 
 def test_the_page_has_the_bands(bent):

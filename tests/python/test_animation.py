@@ -100,9 +100,9 @@ def test_springs_move_with_the_rod(swing, tmp_path, monkeypatch):
     def note(axes, rods, springs, positions):
         drawn.extend(spring.weights @ positions[spring.nodes] for spring in springs)
 
-    monkeypatch.setattr("der.plotting.supports.draw_springs", note)
-    path = result.animate(tmp_path / "swing.gif", fps=20, speed=0.1)
-    assert len(drawn) == len(list(gif_frames(path)))
+    monkeypatch.setattr("der.plotting.picture.draw_springs", note)
+    path = result.animate(tmp_path / "swing.mp4", fps=20, speed=0.1)
+    assert len(drawn) == imageio_ffmpeg.count_frames_and_secs(str(path))[0]
     assert drawn[0] == pytest.approx(result.positions[0, -1])
     assert drawn[-1] == pytest.approx(result.positions[-1, -1])
     assert drawn[-1][1] < drawn[0][1]

@@ -4,10 +4,11 @@ That every command and snippet runs is checked by scripts/check_docs.py, which .
 is a test of that program.
 """
 
-import importlib
+import importlib.util
 import re
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import der
 import matplotlib.pyplot as plt
@@ -352,3 +353,39 @@ def test_the_page_of_failures_has_every_status():
     assert {"unstable_step", "model_error", "collapsed", "folded", "too_fine"} <= found
     page = (DOCS / "what_can_go_wrong.md").read_text(encoding="utf-8")
     assert [status for status in sorted(found) if f"| `{status}` |" not in page] == []
+
+
+def test_formulas_are_set_and_code_is_left_alone():
+    """The hook of the site: MathML in the places of formulas, in which no TeX is left."""
+    pytest.importorskip("latex2mathml")
+    formulas = load_module(DOCS / "formulas.py")
+    page = SimpleNamespace(meta={})
+    text = "So $x_1 + 1$ | `$HOME` and\n\n```sh\necho $A $B\n```\n\n$$\\frac{a}{b}$$\n"
+    words = formulas.on_page_markdown(text, page)
+    assert "`$HOME`" in words
+    assert "echo $A $B" in words
+    html = formulas.on_page_content(words, page)
+    assert html.count("<math") == 2
+    assert "<msub><mi>x</mi><mn>1</mn></msub>" in html
+    assert 'display="block"><mrow><mfrac>' in html
+    for path in DOCS.rglob("*.md"):
+        formulas.on_page_markdown(path.read_text(encoding="utf-8"), page)
+        wrong = [one for one in page.meta["formulas"] if "\\" in one or "$" in one]
+        assert not wrong, f"{name(path)}: {wrong[0]}"
+
+
+def test_the_gallery_is_fresh():
+    """Its text is what the command writes; the pictures of all its scenes are there, twice."""
+    gallery = load_module(DOCS / "make_gallery.py")
+    written = gallery.PAGE + "".join(map(gallery.entry, gallery.SCENES))
+    assert (DOCS / "gallery.md").read_text(encoding="utf-8") == written
+    found = {path.name for path in (DOCS / "images" / "gallery").iterdir()}
+    assert found == {f"{one}{end}.png" for one in gallery.SCENES for end in ("", "_small")}
+
+
+def load_module(path):
+    """The module of a file that is in no package."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

@@ -311,7 +311,7 @@ def test_static_shape_beside_the_drawn_one(tube):
     assert np.all(drawn.get_ydata() == 0.0)
     assert np.array_equal(found.get_xydata(), result.positions[-1])
     labels = [text.get_text() for text in shape.get_legend().get_texts()]
-    assert labels == ["undeformed", "equilibrium"]
+    assert labels == ["as drawn", "equilibrium"]
     text = values.texts[0].get_text()
     assert f"deflection = {result.probes['deflection'][-1]:.6g} m" in text
 
@@ -453,21 +453,3 @@ def test_every_stepper_has_a_look_of_its_own_in_every_figure():
     for name in names:  # alone in a figure, too
         ((_, colour, marker),) = _looks([row(name)])
         assert (to_hex(colour), marker) == looks[name]
-
-
-def test_modes_in_space_are_seen():
-    """A strip that buckles sideways under a force along y moves along z."""
-    stiffness = {"EA": 1e6, "EI1": 0.1, "EI2": 1.0, "GJ": 0.1, "mass_per_length": 1.0}
-    rod = {"name": "rod", "nodes": 11, "from": [0, 0, 0], "to": [1, 0, 0]}
-    scene = {
-        "model": "spatial",
-        "rods": [{**rod, "cross_section": {"stiffness": stiffness}}],
-        "supports": [{"rod": "rod", "at": "start", "clamp": True}],
-        "loads": [{"point_force": {"rod": "rod", "at": "end", "force": [0, 0.2, 0]}}],
-        "analysis": {"buckling": {"count": 2}},
-    }
-    figure = der.plot(der.run(scene), "modes")
-    assert figure.axes[-1].get_xlabel().startswith("x")
-    assert figure.axes[0].get_ylabel().startswith("z")
-    for axes in figure.axes[:2]:
-        assert max(np.ptp(line.get_ydata()) for line in axes.get_lines()) > 0.1

@@ -10,12 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import der
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from der.plotting.picture import Picture, best_plane
 from der.sections import section_of, swept
-from der.viewing.payload import make_payload
 
 DER_RUN = os.environ.get("DER_RUN", str(Path(sys.executable).with_name("der_run")))
 
@@ -374,84 +371,7 @@ def test_exports_have_three_components_and_the_directors(helix, tmp_path):
         assert str(arrays["units/sections/spin"]) == "rad/s"
 
 
-# Pictures
-
-
-def turned_about(axis, angle):
-    axis = np.asarray(axis) / np.linalg.norm(axis)
-    cross = np.cross(np.eye(3), axis)
-    return np.eye(3) - np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
-
-
-@pytest.mark.parametrize(
-    ("axes", "names"),
-    [((0, 1), ("x", "y")), ((0, 2), ("x", "z")), ((1, 2), ("y", "z"))],
-)
-def test_a_shape_in_a_coordinate_plane_is_drawn_there(axes, names):
-    line = np.zeros((1, 20, 3))
-    line[0, :, axes[0]] = np.linspace(0.0, 1.0, 20)
-    line[0, :, axes[1]] = np.linspace(0.0, 1.0, 20) ** 2
-    plane = best_plane(line)
-    assert plane.names == names
-    assert np.array_equal(plane.turned(line)[..., :2], line[..., axes])
-    assert plane.turned(line)[..., 2] == pytest.approx(0.0)
-
-
-def test_a_shape_in_no_plane_is_drawn_with_z_upwards():
-    """Its widest spread is to the right; a shape much wider than high is seen from above."""
-    angle = np.linspace(0.0, 12.0, 200)
-    helix = np.column_stack([0.1 * np.cos(angle), 0.1 * np.sin(angle), 0.1 * angle])
-    assert best_plane(helix[np.newaxis]).names == ("x", "z")
-    oblique = helix + np.outer(angle, [0.3, 0.3, 0.0])
-    plane = best_plane(oblique[np.newaxis])
-    assert plane.rotation[0] == pytest.approx([np.sqrt(0.5), np.sqrt(0.5), 0.0], abs=0.02)
-    assert (plane.names[0][:7], plane.names[1]) == ("along (", "z")
-    low = helix * [10.0, 7.0, 0.3]
-    assert best_plane(low[np.newaxis]).names == ("x", "y")
-
-
-def test_views_are_named_by_their_axes(helix):
-    result = der.run(probed(helix, (2,)))
-    figure = result.plot("shapes", views=["xy", "zy"])
-    labels = [(axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes]
-    assert labels == [("x [m]", "y [m]"), ("z [m]", "y [m]")]
-    for axes, columns in zip(figure.axes, ((0, 1), (2, 1)), strict=True):
-        drawn = [line.get_xydata() for line in axes.lines if len(line.get_xydata()) == 9]
-        assert drawn[-1] == pytest.approx(result.positions[-1][:, columns])
-    for wrong in ("xx", "z", "uv"):
-        with pytest.raises(ValueError, match="a view is two of x, y and z"):
-            result.plot(views=[wrong])
-    plt.close(figure)
-
-
-def test_other_runs_are_drawn_in_one_view(helix, swing):
-    del helix["time"]
-    helix["analysis"] = {"modes": {"count": 1}}
-    with pytest.raises(ValueError, match="one view, not in 2"):
-        der.run(helix).plot(views=["xy", "xz"])
-    with pytest.raises(ValueError, match="a planar run is seen in its plane"):
-        der.run(swing).plot(views=["xy"])
-
-
-def test_pictures_show_a_section_as_it_lies(cantilever):
-    """A strip along x, 20 by 4 mm: seen on its width, on its height, and turned by half a right
-    angle."""
-    rod = cantilever["rods"][0]
-    rod["cross_section"] = {"rectangle": {"width": 0.02, "height": 0.004}, "director": [0, 0, 1]}
-    cantilever["loads"] = []
-    half = {}
-    for view in ("xy", "xz"):
-        picture = Picture(der.run(cantilever), view)
-        half[view] = picture.half_widths(0, picture.positions[0])["strip"]
-    assert half["xy"] == pytest.approx(np.full(9, 0.002))
-    assert half["xz"] == pytest.approx(np.full(9, 0.01))
-    rod["cross_section"]["director"] = [0, 1, 1]
-    picture = Picture(der.run(cantilever), "xy")
-    seen = picture.half_widths(0, picture.positions[0])["strip"]
-    assert seen == pytest.approx(np.full(9, np.sqrt(0.5) * (0.01 + 0.002)))
-    rod["cross_section"] = {"ellipse": {"width": 0.02, "height": 0.004}, "director": [0, 0, 1]}
-    picture = Picture(der.run(cantilever), "xz")
-    assert picture.half_widths(0, picture.positions[0])["strip"] == pytest.approx(np.full(9, 0.01))
+# Sections and programs
 
 
 def test_a_section_sweeps_a_mitred_surface():
@@ -463,83 +383,6 @@ def test_a_section_sweeps_a_mitred_surface():
     assert np.abs(corners[..., 2]) == pytest.approx(np.full((3, 8), 0.1))
     assert corners[1] @ [1, 1, 0] == pytest.approx(np.full(8, 1.0))
     assert sorted({round(x, 9) for x in corners[1, :, 0].tolist()}) == [0.95, 1.05]
-
-
-def test_another_shape_is_drawn_in_the_plane_of_its_principal_axes():
-    flat = np.zeros((3, 50, 3))
-    angle = np.linspace(0.0, 3.0, 50)
-    flat[..., 0], flat[..., 1] = np.cos(angle), np.sin(angle)
-    flat[1] *= 1.1
-    turn = turned_about([1.0, 2.0, -0.5], 0.9)
-    plane = best_plane(flat @ turn.T)
-    seen = plane.turned(flat @ turn.T)
-    assert np.ptp(seen[..., 2]) < 1e-12, "nothing is lost"
-    assert np.linalg.det(plane.rotation) == pytest.approx(1.0)
-    assert all(name.startswith("along (") for name in plane.names)
-
-
-def test_straight_rods_are_drawn_in_x_and_y(cantilever):
-    cantilever["loads"] = []
-    assert Picture(der.run(cantilever)).plane.names == ("x", "y")
-
-
-@pytest.mark.parametrize("what", ["overview", "shapes", "probes"])
-def test_plots_say_what_they_show(helix, what):
-    result = der.run(probed(helix, (2,)))
-    figure = result.plot(what)
-    figure.canvas.draw()
-    if what != "probes":
-        axes = figure.axes[0]
-        names = Picture(result).plane.names
-        assert (axes.get_xlabel(), axes.get_ylabel()) == (f"{names[0]} [m]", f"{names[1]} [m]")
-        assert names == ("x", "z"), "z is upwards in a shape that lies in no plane"
-    plt.close(figure)
-
-
-def test_a_force_along_the_line_of_sight_is_a_circle(cantilever):
-    """The rod bends in the plane x, y; a force along z is seen from its end."""
-    cantilever["loads"] = [
-        {"point_force": {"rod": "strip", "at": "end", "force": [0, 0.05, 0]}},
-        {"point_force": {"rod": "strip", "at": 0.2, "force": [0, 0, -1e-6]}},
-        {"distributed_force": {"rod": "strip", "force": [0, 0, 1e-6]}},
-        {"gravity": [0, 0, -1e-6]},
-    ]
-    result = der.run(cantilever)
-    figure = result.plot("shapes")
-    figure.canvas.draw()
-    axes = figure.axes[0]
-    assert axes.get_ylabel() == "y [m]"
-    drawn = [line for line in axes.lines if line.get_gid() == "load-strip-0.2"]
-    assert {line.get_marker() for line in drawn} == {"o", "x"}
-    texts = [text.get_text() for text in axes.texts]
-    assert {"50 mN", "1 µN", "1 µN/m"} <= set(texts)
-    labels = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert "gravity 1e-06 m/s², away from you" in labels
-    plt.close(figure)
-
-
-def test_planar_loads_of_a_spatial_scene_are_drawn(arm):
-    result = der.run(arm | {"model": "spatial"})
-    figure = result.plot("shapes")
-    figure.canvas.draw()
-    assert figure.axes[0].get_ylabel() == "y [m]"
-    plt.close(figure)
-
-
-def test_modes_are_drawn(cantilever):
-    cantilever["analysis"] = {"modes": {"count": 2}}
-    result = der.run(cantilever)
-    assert result.modes.shapes.shape == (2, 9, 3)
-    figure = result.plot()
-    figure.canvas.draw()
-    plt.close(figure)
-    assert len(make_payload(result)["chapters"]) == 2
-
-
-def test_an_animation_is_written(helix, tmp_path):
-    helix["time"]["duration"] = 0.008
-    path = der.run(helix).animate(tmp_path / "run.gif", fps=5.0)
-    assert path.stat().st_size > 1000
 
 
 def test_a_program_turns_and_twists_a_clamp():

@@ -508,7 +508,7 @@ def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
 
 def test_browser_draws_actuated_stretches(browser, swing, tmp_path):
     """A sleeve around the stretch, and its value above the scene."""
-    table = {"times": [0, 0.2], "values": [0, -4]}
+    table = {"times": [0, 0.1, 0.2], "values": [0, 1, -4]}
     part = {"name": "bend", "rod": "arm", "from": 0.35, "to": 0.75}
     swing["actuation"] = [{**part, "natural_curvature": table}]
     swing["loads"] = []

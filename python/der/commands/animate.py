@@ -1,7 +1,8 @@
 """Write an animation of a run: GIF or MP4, true to time and to scale.
 
 The frames of a path of equilibria are its points; modes vibrate one after the other. MP4 output
-requires the package imageio-ffmpeg. Animations are limited to 20,000 frames.
+requires the package imageio-ffmpeg. Runs in space are seen in perspective. Animations are limited
+to 20,000 frames.
 """
 
 from __future__ import annotations

@@ -37,7 +37,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--view",
         metavar="AXES",
-        help="axes to the right and upwards, in space, such as xz; xy,xz draws two views",
+        help="in space: 3d, in perspective (default), or the axes to the right and up, such as "
+        "xz; 3d,xy draws two views",
     )
     parser.add_argument(
         "--probes",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
@@ -11,11 +12,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from der.film import MODE_SIZE
-from der.plotting.actuation import draw_actuation
 from der.plotting.picture import Picture
-from der.plotting.shapes import draw_shapes, limits
 from der.plotting.style import MUTED, PALETTE, axis_label
-from der.plotting.supports import draw_foundations, draw_springs, draw_supports
+from der.scene_loads import ActingLoads
 
 if TYPE_CHECKING:
     from der.analyses import Path
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _SAME = 2e-3  # lines nearer than this, against the extent of the picture, are one
-_ROW = 1.6  # height of a panel [inch]
+_ROW = (1.6, 3.2)  # height of a panel [inch], of a planar run the least
 _WIDTH = 7.2  # of the figure [inch]
 
 
@@ -43,38 +42,45 @@ def plot_modes(picture: Picture) -> Figure:
         labels = [f"load factor {factor:.5g}" for factor in result.buckling.load_factors]
     else:
         raise ValueError("the run has found no modes to draw")
-    shapes = picture.plane.turned(shapes)
-    rest = picture.positions[-1]
-    low, high = limits(result.rods, [rest])
-    size = MODE_SIZE * float(np.max(high - low))
+    last = len(result.times) - 1
+    rest = picture.shape(last, MUTED)
+    size = MODE_SIZE * float(np.ptp(rest.positions, axis=0).max())
+    swings = [shape * size / np.abs(shape).max() for shape in shapes]
+    loads = ActingLoads(foundations=picture.loads(0).foundations)
+    all_sides = [
+        replace(rest, positions=rest.positions + sign * swing)
+        for swing in swings
+        for sign in (-1, 1)
+    ]
+    room = (_WIDTH - 2.0, _ROW[1])
+    low, high = picture.corners(all_sides, loads, room)
+    fitting = room[0] * (high - low)[1] / (high - low)[0]
+    row = _ROW[0] if picture.has_axes else float(np.clip(fitting, *_ROW))
     figure, panels = plt.subplots(
         len(labels),
         1,
-        figsize=(_WIDTH, _ROW * len(labels) + 0.6),
+        figsize=(_WIDTH, row * len(labels) + 0.6),
         squeeze=False,
-        sharex=True,
+        sharex=picture.has_axes,
         layout="constrained",
     )
-    for axes, shape, label in zip(panels[:, 0], shapes, labels, strict=True):
-        _draw_mode(axes, picture, rest, shape * size / np.abs(shape).max(), label)
-        picture.label(axes, low, high)
-        axes.label_outer()
+    for axes, swing, label in zip(panels[:, 0], swings, labels, strict=True):
+        moved = rest.positions + swing
+        drawn = [
+            replace(rest, positions=rest.positions - swing, linestyle=":"),
+            replace(rest, linestyle="--"),
+            replace(rest, positions=moved, colour=PALETTE[0]),
+        ]
+        picture.draw(axes, drawn, rest, loads)
+        axes.update_datalim(np.array([low, high]))
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.margins(0.06 if picture.has_axes else 0.0)
+        axes.autoscale_view()
+        axes.text(1.01, 0.5, f"{label},\nnot to scale", transform=axes.transAxes, va="center")
+        picture.finish(axes, low, high, float(np.max((high - low) / room)) / 72.0)
+        if picture.has_axes:
+            axes.label_outer()
     return figure
-
-
-def _draw_mode(axes: Axes, picture: Picture, rest: Array, shape: Array, label: str) -> None:
-    rods = picture.rods
-    draw_shapes(axes, rods, rest - shape, MUTED, linestyle=":")
-    draw_shapes(axes, rods, rest, MUTED, linestyle="--")
-    for rod in rods:
-        line = (rest + shape)[rod.line_nodes]
-        axes.plot(line[:, 0], line[:, 1], color=PALETTE[0], zorder=4)
-    draw_supports(axes, rods, picture.held_nodes(0), rest)
-    draw_springs(axes, rods, picture.springs, rest)
-    draw_foundations(axes, rods, picture.loads(0).foundations, rest)
-    draw_actuation(axes, rods, picture.actuated, 0, rest)
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.text(1.01, 0.5, f"{label},\nnot to scale", transform=axes.transAxes, va="center")
 
 
 def plot_path(result: RunData, names: list[str]) -> Figure:

@@ -73,13 +73,19 @@ class _LengthFormatter(Formatter):
         return f"{(x - self._origin) / self._metres:.6g}"
 
     def format_ticks(self, values: Sequence[float]) -> list[str]:
-        shown = (np.asarray(values, dtype=np.float64) - self._origin) / self._metres
-        slack = 1e-3 * float(np.ptp(shown)) / max(len(shown) - 1, 1) if len(shown) else 0.0
-        decimals = 0
-        while decimals < 12 and np.any(np.abs(np.round(shown, decimals) - shown) > slack):
-            decimals += 1
-        rounded = np.round(shown, decimals) + 0.0  # no minus zero
-        return [self.fix_minus(f"{value:.{decimals}f}") for value in rounded]
+        return tick_texts((np.asarray(values, dtype=np.float64) - self._origin) / self._metres)
+
+
+def tick_texts(shown: Array) -> list[str]:
+    """Return evenly spaced numbers as texts, all with as many decimals as they need."""
+    if len(shown) == 0:
+        return []
+    slack = max(1e-3 * np.ptp(shown) / max(len(shown) - 1, 1), 1e-9 * np.abs(shown).max())
+    decimals = 0
+    while decimals < 12 and np.any(np.abs(np.round(shown, decimals) - shown) > slack):
+        decimals += 1
+    rounded = np.round(shown, decimals) + 0.0  # no minus zero
+    return [Formatter.fix_minus(f"{value:.{decimals}f}") for value in rounded]
 
 
 def label_positions(axes: Axes, low: Array, high: Array, names: Sequence[str] = ("x", "y")) -> None:

@@ -24,10 +24,6 @@ _LINE_ARROWS = 13  # arrows of a distributed force on a whole rod
 _MOMENT = 12.0  # radius of the arc [points]
 _TEXT = 26.0  # room for what stands beside an arrow [points]
 
-#: A vector that is nearer to the line of sight than this is drawn as seen from its end.
-_HEAD_ON = 0.01
-_DOT = 6.0  # diameter of the circle that it then is [points]
-
 _HEAD = Path(np.array([(0.0, 0.0), (-1.0, 0.38), (-1.0, -0.38), (0.0, 0.0)]))
 _GRAVITY = Path.make_compound_path(Path(np.array([(-1.6, 0.0), (-0.6, 0.0)])), _HEAD)
 
@@ -48,7 +44,7 @@ def draw_loads(
     loads
         From ``der.scene_loads.acting_loads(result, frame)``.
     positions
-        Positions of all nodes at that frame [m], shape (nodes, dim); the view is along z.
+        Positions of all nodes at that frame [m], shape (nodes, 2).
     labels
         Whether to write their amounts.
     """
@@ -73,7 +69,7 @@ def draw_loads(
         text = quantity_text(float(np.linalg.norm(moment.value)), "N m")
         _draw_moment(axes, by_name[moment.rod], moment, positions, label(text))
     if loads.gravity is not None:
-        _add_gravity_to_legend(axes, loads.gravity)
+        add_gravity_to_legend(axes, loads.gravity, loads.gravity)
 
 
 def room_for_loads(
@@ -92,36 +88,24 @@ def room_for_loads(
     corners = [np.zeros((0, 2))]
     for force in loads.forces:
         rod = by_name[force.rod]
-        if _is_head_on(force.value):
-            outer = np.array([0.0, _DOT + 0.5 * _TEXT])
-        else:
-            direction, pulls = _aim(rod, force, positions)
-            outer = (_FORCE + _TEXT) * (direction if pulls else -direction)
-        corners.append(place_on(rod, positions, force.at)[:2] + metres_per_point * outer)
+        direction, pulls = _aim(rod, force, positions)
+        outer = (_FORCE + _TEXT) * (direction if pulls else -direction)
+        corners.append(place_on(rod, positions, force.at) + metres_per_point * outer)
     for line in loads.lines:
         rod = by_name[line.rod]
-        outer = np.array([0.0, _DOT + 0.5 * _TEXT])
-        if not _is_head_on(line.value):
-            outer = -(_LINE_FORCE + _TEXT) * line.value[:2] / np.linalg.norm(line.value[:2])
-        middle = place_on(rod, positions, 0.5 * (line.start + line.end))[:2]
+        outer = -(_LINE_FORCE + _TEXT) * line.value / np.linalg.norm(line.value)
+        middle = place_on(rod, positions, 0.5 * (line.start + line.end))
         corners.append(middle + metres_per_point * outer)
     for part in loads.foundations:
         rod = by_name[part.rod]
-        ground = (
-            metres_per_point * FOUNDATION_HEIGHT * ground_direction(part, rod, positions[:, :2])
-        )
-        ends = [place_on(rod, positions, at)[:2] for at in (part.start, part.end)]
+        ground = metres_per_point * FOUNDATION_HEIGHT * ground_direction(part, rod, positions)
+        ends = [place_on(rod, positions, at) for at in (part.start, part.end)]
         corners.append(np.array(ends) + ground)
     for moment in loads.moments:
-        point = place_on(by_name[moment.rod], positions, moment.at)[:2]
+        point = place_on(by_name[moment.rod], positions, moment.at)
         around = np.array([[-_MOMENT, -_MOMENT], [_MOMENT, _MOMENT + 0.5 * _TEXT]])
         corners.append(point + metres_per_point * around)
     return np.vstack(corners)
-
-
-def _is_head_on(vector: Array) -> bool:
-    """Return whether a vector in space points to the viewer or away from there."""
-    return len(vector) == 3 and bool(np.linalg.norm(vector[:2]) < _HEAD_ON * np.linalg.norm(vector))
 
 
 def _aim(rod: Rod, load: PointLoad, positions: Array) -> tuple[Array, bool]:
@@ -129,29 +113,26 @@ def _aim(rod: Rod, load: PointLoad, positions: Array) -> tuple[Array, bool]:
 
     An arrow ends at its point, but one that pulls an end along the rod begins there.
     """
-    direction = load.value[:2] / np.linalg.norm(load.value[:2])
+    direction = load.value / np.linalg.norm(load.value)
     return direction, float(direction @ _outwards(rod, load.at, positions)) > 0.5
 
 
 def _draw_force(axes: Axes, rod: Rod, load: PointLoad, positions: Array, text: str) -> None:
     point = place_on(rod, positions, load.at)
-    if _is_head_on(load.value):
-        _draw_head_on(axes, point, load.value, f"load-{rod.name}-{load.at:g}", text)
-        return
     direction, pulls = _aim(rod, load, positions)
     tail = np.zeros(2) if pulls else -_FORCE * direction
     tip = _FORCE * direction if pulls else np.zeros(2)
     _arrow(axes, point, tail, tip, 1.5, f"load-{rod.name}-{load.at:g}")
     if text:
         outer = tip if pulls else tail
-        _write(axes, point, outer, direction if pulls else -direction, text)
+        write_beside(axes, point, outer, direction if pulls else -direction, text)
 
 
 def _outwards(rod: Rod, at: float, positions: Array) -> Array:
     """Return the unit vector that leads out of the rod at one of its ends, else zero."""
     if rod.closed:
         return np.zeros(2)
-    line = positions[rod.nodes][:, :2]
+    line = positions[rod.nodes]
     if at <= 1e-9 * rod.length:
         edge = line[0] - line[1]
     elif at >= (1.0 - 1e-9) * rod.length:
@@ -163,32 +144,21 @@ def _outwards(rod: Rod, at: float, positions: Array) -> Array:
 
 def _draw_line(axes: Axes, rod: Rod, load: LineLoad, positions: Array, text: str) -> None:
     count = max(3, round(_LINE_ARROWS * (load.end - load.start) / rod.length))
-    head_on = _is_head_on(load.value)
-    direction = np.zeros(2) if head_on else load.value[:2] / np.linalg.norm(load.value[:2])
+    direction = load.value / np.linalg.norm(load.value)
     tail = -_LINE_FORCE * direction
     for number, at in enumerate(np.linspace(load.start, load.end, count)):
         point = place_on(rod, positions, float(at))
-        gid = f"load-{rod.name}-line-{number}"
-        if head_on:
-            _draw_head_on(axes, point, load.value, gid, text if number == count // 2 else "")
-        else:
-            _arrow(axes, point, tail, np.zeros(2), 0.8, gid)
-    if head_on:
-        return
+        _arrow(axes, point, tail, np.zeros(2), 0.8, f"load-{rod.name}-line-{number}")
     middle = place_on(rod, positions, 0.5 * (load.start + load.end))
     if text:
-        _write(axes, middle, tail, -direction, text)
+        write_beside(axes, middle, tail, -direction, text)
 
 
 def _draw_moment(axes: Axes, rod: Rod, load: PointLoad, positions: Array, text: str) -> None:
     point = place_on(rod, positions, load.at)
-    x, y = point[:2]
-    about = float(load.value[2] if load.value.ndim else load.value)  # the line of sight
-    if abs(about) < 0.5 * np.linalg.norm(load.value):
-        _draw_turning_axis(axes, rod, point, load, text)
-        return
+    x, y = point
     angles = np.radians(np.linspace(-150.0, 90.0, 40))
-    vertices = np.column_stack([np.cos(angles), np.sign(about) * np.sin(angles)])
+    vertices = np.column_stack([np.cos(angles), np.sign(load.value) * np.sin(angles)])
     arc = Path(vertices)
     # The head begins where the arc ends, at its top or its bottom, and is tangent to it.
     head = _HEAD.transformed(
@@ -213,41 +183,12 @@ def _draw_moment(axes: Axes, rod: Rod, load: PointLoad, positions: Array, text: 
             gid=f"load-{rod.name}-{load.at:g}",
         )
     if text:
-        _write(axes, np.array([x, y]), np.array([0.0, _MOMENT]), np.array([0.0, 1.0]), text)
-
-
-def _draw_turning_axis(axes: Axes, rod: Rod, point: Array, load: PointLoad, text: str) -> None:
-    """Draw a moment whose axis is seen from the side: an arrow with two heads along it."""
-    direction = load.value[:2] / np.linalg.norm(load.value[:2])
-    gid = f"load-{rod.name}-{load.at:g}"
-    for length in (_FORCE, _FORCE - 7.0):
-        _arrow(axes, point, np.zeros(2), length * direction, 1.5, gid)
-    if text:
-        _write(axes, point, _FORCE * direction, direction, text)
-
-
-def _draw_head_on(axes: Axes, point: Array, vector: Array, gid: str, text: str) -> None:
-    """Draw an arrow along the line of sight: a dot is its tip, a cross its tail."""
-    for marker, size in (("o", _DOT), ("." if vector[2] > 0.0 else "x", 0.5 * _DOT)):
-        axes.plot(
-            [point[0]],
-            [point[1]],
-            marker=marker,
-            markersize=size,
-            markerfacecolor="white" if marker == "o" else LOAD,
-            markeredgecolor=LOAD,
-            linestyle="none",
-            zorder=4.5,
-            clip_on=False,
-            gid=gid,
-        )
-    if text:
-        _write(axes, point, np.array([0.0, 0.5 * _DOT]), np.array([0.0, 1.0]), text)
+        write_beside(axes, np.array([x, y]), np.array([0.0, _MOMENT]), np.array([0.0, 1.0]), text)
 
 
 def _arrow(axes: Axes, point: Array, tail: Array, tip: Array, width: float, gid: str) -> None:
     """Draw an arrow whose tail and tip lie at offsets [points] from a point [m]."""
-    x, y = point[:2]
+    x, y = point
     length = float(np.linalg.norm(tip - tail))
     angle = float(np.arctan2(*(tip - tail)[::-1]))
     head = min(0.42 * length, 9.0)
@@ -270,8 +211,8 @@ def _arrow(axes: Axes, point: Array, tail: Array, tip: Array, width: float, gid:
         )
 
 
-def _write(axes: Axes, point: Array, offset: Array, away: Array, text: str) -> None:
-    """Write beside a symbol, on its side that looks `away` from the rod."""
+def write_beside(axes: Axes, point: Array, offset: Array, away: Array, text: str) -> None:
+    """Write beside a symbol at an offset [points], on its side that looks `away` from the rod."""
     gap = 3.0
     sideways = abs(away[0]) > abs(away[1])
     axes.annotate(
@@ -289,13 +230,14 @@ def _write(axes: Axes, point: Array, offset: Array, away: Array, text: str) -> N
     )
 
 
-def _add_gravity_to_legend(axes: Axes, gravity: Array) -> None:
-    angle = float(np.arctan2(gravity[1], gravity[0]))
+def add_gravity_to_legend(axes: Axes, gravity: Array, seen: Array) -> None:
+    """Add gravity [m/s^2] to the legend, with an arrow along it as it is seen."""
+    angle = float(np.arctan2(seen[1], seen[0]))
     path = _GRAVITY.transformed(Affine2D().translate(0.8, 0.0).rotate(angle))
     text = f"gravity {quantity_text(float(np.linalg.norm(gravity)), 'm/s²')}"
-    if _is_head_on(gravity):
+    if np.linalg.norm(seen[:2]) < 0.01 * np.linalg.norm(seen):
         path = Path.circle(radius=0.4)
-        text += ", towards you" if gravity[2] > 0.0 else ", away from you"
+        text += ", towards you" if seen[2] > 0.0 else ", away from you"
     axes.plot(
         [],
         [],

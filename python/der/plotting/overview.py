@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 import matplotlib.pyplot as plt
@@ -13,12 +14,12 @@ from numpy.typing import NDArray
 
 from der._core import Scenario, ended_as_asked
 from der.film import title_of
-from der.plotting.actuation import add_actuation_to_legend, draw_actuation
+from der.plotting.actuation import add_actuation_to_legend
 from der.plotting.analyses import plot_modes, plot_path
-from der.plotting.loads import draw_loads, room_for_loads
 from der.plotting.picture import Picture
 from der.plotting.probes import draw_probe, mark_times, shade_unreliable
-from der.plotting.shapes import draw_shapes, limits, make_exactly_equal, pick_frames
+from der.plotting.shapes import Shape, make_exactly_equal, pick_frames
+from der.plotting.space import make_picture
 from der.plotting.style import (
     AXES_TITLE,
     FIGURE_TITLE,
@@ -29,9 +30,9 @@ from der.plotting.style import (
     time_text,
     wrapped,
 )
-from der.plotting.supports import draw_foundations, draw_springs, draw_supports
 from der.probe_series import Probes
 from der.run_data import RunData
+from der.scene_loads import ActingLoads
 
 Array = NDArray[np.float64]
 What = Literal["overview", "shapes", "probes"]
@@ -66,9 +67,9 @@ def plot(
     probes
         Names of the probes to draw; without it, all.
     views
-        Views of a run in space, one below the other: each names the axis to the right and the one
-        upwards, such as ``"xz"``. Without it, the view that shows the shapes best. Modes and the
-        shapes of a path have one.
+        Views of a run in space, one below the other: ``"3d"``, in perspective, as without it; or
+        the axis to the right and the one upwards, such as ``"xz"``. Modes and the shapes of a path
+        have one.
     title
         In place of the scene's title.
 
@@ -87,12 +88,12 @@ def plot(
     kind = result.scenario.analysis
     if times is not None and result.scenario.is_static:
         raise ValueError(f"a {kind} run has no time, and so no shapes at times")
-    frames = [] if kind == "continuation" else _frames_to_draw(result, times)
     if what == "probes" and not names:
         raise ValueError("the scene has no probes to plot; add some under output.probes")
-    pictures = [Picture(result, view) for view in views] if views else [Picture(result)]
+    pictures = [make_picture(result, view) for view in views] if views else [make_picture(result)]
     if len(pictures) > 1 and kind in ("continuation", "modes", "buckling"):
         raise ValueError(f"a {kind} run is drawn in one view, not in {len(pictures)}")
+    frames = [] if result.scenario.is_static else _frames_to_draw(pictures[0], times)
     with style():
         if kind == "continuation" and what != "shapes":
             figure = plot_path(result, names)
@@ -178,9 +179,10 @@ def _probe_names(result: RunData, probes: Sequence[str] | None) -> list[str]:
     return list(probes)
 
 
-def _frames_to_draw(result: RunData, times: Sequence[float] | None) -> list[int]:
+def _frames_to_draw(picture: Picture, times: Sequence[float] | None) -> list[int]:
+    result = picture.result
     if times is None:
-        return pick_frames(result.positions, 6)
+        return pick_frames(result.positions, picture.instants)
     first, last = float(result.times[0]), float(result.times[-1])
     slack = 1e-9 * max(abs(first), abs(last))
     for time in times:
@@ -198,13 +200,17 @@ def _plot_motion(
     if what == "probes":
         figure, panels = _figure(heights)
     else:
-        shapes = [[picture.positions[frame] for frame in frames] for picture in pictures]
-        seen = list(zip(pictures, shapes, strict=True))
-        views = [_shape_height(picture, own, frames[-1]) for picture, own in seen]
+        seen = [
+            [
+                picture.shape(frame, colour, _time_label(result, float(result.times[frame])))
+                for frame, colour in zip(frames, time_colours(len(frames)), strict=True)
+            ]
+            for picture in pictures
+        ]
+        views = [_shape_height(*each) for each in zip(pictures, seen, strict=True)]
         figure, panels = _figure([*views, *heights])
-        labels = [_time_label(result, time) for time in marks]
-        for picture, own in seen:
-            _draw_shape_panel(panels.pop(0), picture, own, labels, frames)
+        for picture, shapes in zip(pictures, seen, strict=True):
+            _draw_shape_panel(panels.pop(0), picture, shapes)
     for axes, name in zip(panels, names, strict=True):
         probe = result.probes[name]
         draw_probe(axes, result.times, probe, name, probe.unit)
@@ -227,34 +233,32 @@ def _time_label(result: RunData, time: float) -> str:
 
 def _plot_path_shapes(picture: Picture) -> Figure:
     """Draw shapes along a path: coloured by load factor, or by branch where there are several."""
-    rods, positions = picture.rods, picture.positions
+    positions = picture.result.positions
     path = picture.result.path
     if path is None:
         raise ValueError("the run has found no path to draw")
-    if len(np.unique(path.branch)) == 1:
-        frames = pick_frames(positions, 6)
-        labels = [f"load factor {path.factor[frame]:.3g}" for frame in frames]
-        shapes = [positions[frame] for frame in frames]
-        figure, (axes,) = _figure([_shape_height(picture, shapes, frames[-1])])
-        _draw_shape_panel(axes, picture, shapes, labels, frames)
+    branches = np.unique(path.branch)
+    shapes = []
+    if len(branches) == 1:
+        frames = pick_frames(positions, picture.instants)
+        for frame, colour in zip(frames, time_colours(len(frames)), strict=True):
+            shapes.append(picture.shape(frame, colour, f"load factor {path.factor[frame]:.3g}"))
+        figure, (axes,) = _figure([_shape_height(picture, shapes)])
+        _draw_shape_panel(axes, picture, shapes)
         return figure
-    low, high = limits(rods, list(positions))
-    figure, (axes,) = _figure([_panel_height(*(high - low))])
-    for branch in np.unique(path.branch):
+    for branch in branches:
         rows = np.flatnonzero(path.branch == branch)
         first, last = path.factor[rows[0]], path.factor[rows[-1]]
         label: str | None = f"branch {branch}: load factor\n{first:.3g} to {last:.3g}"
         for row in rows[pick_frames(positions[rows], 4)]:
             colour = PALETTE[branch % len(PALETTE)]
-            half_widths = picture.half_widths(int(row), positions[row])
-            draw_shapes(axes, rods, positions[row], colour, label, half_widths=half_widths)
+            shapes.append(picture.shape(int(row), colour, label))
             label = None
-    draw_supports(axes, rods, picture.held_nodes(0), positions[0])
-    draw_springs(axes, rods, picture.springs, positions[0])
-    draw_foundations(axes, rods, picture.loads(0).foundations, positions[0])
-    draw_actuation(axes, rods, picture.actuated, 0, positions[0])
-    add_actuation_to_legend(axes, picture.actuated)
-    _finish_shape_panel(axes, picture)
+    # At the start, where the branches still are together, and without the loads, which grow.
+    start = picture.shape(0, MUTED)
+    loads = ActingLoads(foundations=picture.loads(0).foundations)
+    figure, (axes,) = _figure([_shape_height(picture, shapes, loads)])
+    _draw_shape_panel(axes, picture, shapes, start, loads)
     return figure
 
 
@@ -265,16 +269,16 @@ def _plot_static(pictures: list[Picture], what: What, names: list[str]) -> Figur
     if what == "probes":
         figure, panels = _figure([table_height])
     else:
+        label = "equilibrium" if ended_as_asked(result.status) else "where it ended"
+        found = [picture.shape(last, time_colours(1)[0], label) for picture in pictures]
         views = [
-            _shape_height(picture, [picture.initial_positions, picture.positions[-1]], last)
-            for picture in pictures
+            _shape_height(picture, [shape]) for picture, shape in zip(pictures, found, strict=True)
         ]
         figure, panels = _figure([*views, *([table_height] if names else [])])
-        label = "equilibrium" if ended_as_asked(result.status) else "where it ended"
-        for picture in pictures:
-            axes = panels.pop(0)
-            draw_shapes(axes, picture.rods, picture.initial_positions, MUTED, "undeformed", "--")
-            _draw_shape_panel(axes, picture, [picture.positions[-1]], [label], [last])
+        drawn = result.model.initial_positions
+        for picture, shape in zip(pictures, found, strict=True):
+            before = replace(shape, positions=drawn, colour=MUTED, label="as drawn", linestyle="--")
+            _draw_shape_panel(panels.pop(0), picture, [before, shape])
     if panels:
         _write_values(panels[0], result, names)
     return figure
@@ -292,52 +296,41 @@ def _figure(heights: list[float]) -> tuple[Figure, list[Axes]]:
     return figure, list(axes[:, 0])
 
 
-def _shape_height(picture: Picture, shapes: Sequence[Array], frame: int) -> float:
+def _solid(shapes: Sequence[Shape]) -> list[Shape]:
+    """Return the shapes that the axes have to hold: not the dashed one."""
+    return [shape for shape in shapes if shape.linestyle == "-"]
+
+
+def _shape_height(
+    picture: Picture, shapes: Sequence[Shape], loads: ActingLoads | None = None
+) -> float:
     """Return the height [inch] at which the shapes fill the width, within bounds."""
-    low, high = _corners(picture, shapes, frame)
-    return _panel_height(*(high - low))
-
-
-def _panel_height(width: float, height: float) -> float:
-    return float(np.clip(_SHAPE_WIDTH * height / max(width, 1e-300) + 0.5, *_SHAPE_HEIGHT))
-
-
-def _corners(picture: Picture, shapes: Sequence[Array], frame: int) -> tuple[Array, Array]:
-    """Return the lower left and upper right corner [m] of shapes and the symbols of loads."""
-    low, high = limits(picture.rods, shapes)
+    loads = loads or picture.loads(shapes[-1].frame)
+    low, high = picture.corners(shapes, loads, (_SHAPE_WIDTH, _SHAPE_HEIGHT[1] - 0.5))
     width, height = high - low
-    point = max(width / (72.0 * _SHAPE_WIDTH), height / (72.0 * (_SHAPE_HEIGHT[1] - 0.5)))
-    room = room_for_loads(picture.rods, picture.loads(frame), shapes[-1], float(point))
-    return np.vstack([low, room]).min(axis=0), np.vstack([high, room]).max(axis=0)
+    fitting = _SHAPE_WIDTH * height / max(width, 1e-300) + (0.5 if picture.has_axes else 0.0)
+    return float(np.clip(fitting, *_SHAPE_HEIGHT))
 
 
 def _draw_shape_panel(
     axes: Axes,
     picture: Picture,
-    shapes: Sequence[Array],
-    labels: Sequence[str],
-    frames: Sequence[int],
+    shapes: Sequence[Shape],
+    at: Shape | None = None,
+    loads: ActingLoads | None = None,
 ) -> None:
-    """Draw the shapes at some frames, with supports, loads and actuation at the last."""
-    colours = time_colours(len(shapes))
-    for positions, label, colour, at in zip(shapes, labels, colours, frames, strict=True):
-        half_widths = picture.half_widths(at, positions)
-        draw_shapes(axes, picture.rods, positions, colour, label, half_widths=half_widths)
-    frame = frames[-1]
-    draw_actuation(axes, picture.rods, picture.actuated, frame, shapes[-1])
-    draw_supports(axes, picture.rods, picture.held_nodes(frame), shapes[-1])
-    draw_springs(axes, picture.rods, picture.springs, shapes[-1])
-    draw_loads(axes, picture.rods, picture.loads(frame), shapes[-1])
-    add_actuation_to_legend(axes, picture.actuated, frame)
-    axes.update_datalim(np.array(_corners(picture, shapes, frame)))
-    _finish_shape_panel(axes, picture)
-
-
-def _finish_shape_panel(axes: Axes, picture: Picture) -> None:
+    """Draw shapes, with supports, actuation and loads at one of them: by default the last."""
+    at = at or shapes[-1]
+    loads = loads or picture.loads(at.frame)
+    picture.draw(axes, shapes, at, loads)
+    add_actuation_to_legend(axes, picture.actuated, at.frame)
+    room = (_SHAPE_WIDTH, _SHAPE_HEIGHT[1] - 0.5)
+    low, high = picture.corners(_solid(shapes), loads, room)
+    axes.update_datalim(np.array([low, high]))
     axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.06)
+    axes.margins(0.06 if picture.has_axes else 0.0)
     axes.autoscale_view()
-    picture.label(axes, np.array(axes.dataLim.min), np.array(axes.dataLim.max))
+    picture.finish(axes, low, high, float(np.max((high - low) / room)) / 72.0)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
 
 

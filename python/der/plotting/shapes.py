@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,6 +17,32 @@ from numpy.typing import NDArray
 from der._core import Rod
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """All rods at one instant, as a picture shows them.
+
+    Attributes
+    ----------
+    positions
+        Positions of all nodes [m], shape (nodes, dim).
+    frame
+        The frame of the result whose supports, loads and actuation it has.
+    colour, linestyle
+        Of the centre line; rods with another line than ``-`` are that line alone.
+    label
+        For the legend.
+    directors
+        Director 1 at the nodes of each rod, as ``der.sections.directors_along`` has it.
+    """
+
+    positions: Array
+    frame: int
+    colour: ColorType
+    label: str | None
+    directors: Sequence[Array | None]
+    linestyle: str = "-"
 
 
 def pick_frames(positions: Array, count: int) -> list[int]:
@@ -40,7 +67,7 @@ def pick_frames(positions: Array, count: int) -> list[int]:
     return sorted(frames | {len(positions) - 1})
 
 
-def outline(positions: Array, radius: float | Array) -> Array:
+def outline(positions: Array, radius: float) -> Array:
     """Return the outline of a rod as a polygon.
 
     Parameters
@@ -48,7 +75,7 @@ def outline(positions: Array, radius: float | Array) -> Array:
     positions
         Centre line [m], shape (nodes, 2); that of a ring ends with its first node.
     radius
-        Half the thickness [m], one for all or shape (nodes,).
+        Half the thickness [m].
 
     Returns
     -------
@@ -64,8 +91,7 @@ def outline(positions: Array, radius: float | Array) -> Array:
         ends = [tangents[:1] + tangents[-1:]] * 2
     sums = np.vstack([ends[0], tangents[:-1] + tangents[1:], ends[1]])
     along = 2.0 * sums / np.maximum(np.sum(sums**2, axis=1, keepdims=True), 1.0)
-    reach = np.broadcast_to(radius, len(positions))[:, np.newaxis]
-    offsets = reach * np.column_stack([-along[:, 1], along[:, 0]])
+    offsets = radius * np.column_stack([-along[:, 1], along[:, 0]])
     return np.vstack([positions + offsets, (positions - offsets)[::-1]])
 
 
@@ -76,7 +102,6 @@ def draw_shapes(
     colour: ColorType,
     label: str | None = None,
     linestyle: str = "-",
-    half_widths: Mapping[str, Array] | None = None,
 ) -> None:
     """Draw all rods at one instant.
 
@@ -90,29 +115,27 @@ def draw_shapes(
     rods
         The rods; their `nodes` pick rows of `positions`.
     positions
-        Positions of all nodes [m], shape (nodes, dim); the view is along z.
+        Positions of all nodes [m], shape (nodes, 2).
     colour, linestyle
         Style of the centre line; thickness and spheres are a pale tone of the colour.
     label
         For the legend.
-    half_widths
-        How far each rod, by its name, reaches to both sides of its line at its nodes [m]; those
-        that are missing have their radius.
     """
-    half_widths = half_widths or {}
     for rod in rods:
-        line = positions[rod.line_nodes][:, :2]
-        axes.plot(line[:, 0], line[:, 1], color=colour, linestyle=linestyle, label=label, zorder=3)
+        line = positions[rod.line_nodes]
+        (drawn,) = axes.plot([], [], color=colour, linestyle=linestyle, label=label, zorder=3)
+        drawn.set_data(line[:, 0], line[:, 1])
         label = None  # once for all rods of the instant
         if linestyle == "-":
-            _draw_thickness(axes, line, half_widths.get(rod.name, rod.radius), colour)
+            axes.update_datalim(line)  # another shape does not stretch the axes
+            _draw_thickness(axes, line, rod.radius, colour)
             _draw_spheres(axes, rod, line, colour)
 
 
-def _draw_thickness(axes: Axes, line: Array, half_width: float | Array, colour: ColorType) -> None:
-    if np.any(np.asarray(half_width) > 0.0):
+def _draw_thickness(axes: Axes, line: Array, radius: float, colour: ColorType) -> None:
+    if radius > 0.0:
         body = PolyCollection(
-            [outline(line, half_width)], facecolor=colour, alpha=0.3, linewidth=0.0, zorder=2
+            [outline(line, radius)], facecolor=colour, alpha=0.3, linewidth=0.0, zorder=2
         )
         axes.add_collection(body)
 
@@ -134,7 +157,7 @@ def limits(rods: Sequence[Rod], shapes: Sequence[Array]) -> tuple[Array, Array]:
     for positions in shapes:
         for rod in rods:
             around = np.maximum(rod.sphere_radii, rod.radius)[:, np.newaxis]
-            line = positions[rod.nodes][:, :2]
+            line = positions[rod.nodes]
             low = np.minimum(low, (line - around).min(axis=0))
             high = np.maximum(high, (line + around).max(axis=0))
     return low, high

@@ -21,7 +21,6 @@ PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 #: Markers of lines that must be distinguishable by more than their colour.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h", ">", "p", "d")
 _DARKER = 0.55  # of the colours, each time that the palette begins anew
-_PALEST = 0.25  # of the colour of an actuation, where its value is 0
 
 #: Parts that are not the result itself: supports, zero lines, reference shapes.
 MUTED = "#6b6b6b"
@@ -75,17 +74,11 @@ def look(index: int) -> tuple[ColorType, str]:
     return (share * red, share * green, share * blue), MARKERS[index % len(MARKERS)]
 
 
-def actuated_colour(number: int, share: float) -> tuple[float, float, float]:
-    """Return the colour of actuation number `number` at a share of its largest value.
-
-    It is paler the smaller the value is, and dark where the value is negative.
-    """
-    full = np.array(to_rgb(ACTUATED[number % len(ACTUATED)]))
-    if share < 0.0:
-        full *= _DARKER
-    depth = _PALEST + (1.0 - _PALEST) * min(abs(share), 1.0)
-    red, green, blue = (depth * full + 1.0 - depth).tolist()
-    return red, green, blue
+def actuated_colour(number: int, negative: bool) -> tuple[float, float, float]:
+    """Return the colour of actuation number `number`: dark where its value is negative."""
+    depth = _DARKER if negative else 1.0
+    red, green, blue = to_rgb(ACTUATED[number % len(ACTUATED)])
+    return depth * red, depth * green, depth * blue
 
 
 @contextmanager

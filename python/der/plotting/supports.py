@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -54,34 +53,10 @@ _SPIRAL = _strokes(
 )
 
 
-@dataclass(frozen=True)
-class HeldPlace:
-    """A held node as a picture of a run in space shows it: with the attributes of a `HeldNode`."""
-
-    rod: str
-    node: int
-    components: list[str]
-    tangent_angle: float | None
-
-
-@dataclass(frozen=True, eq=False)
-class SpringPlace:
-    """A spring as a picture of a run in space shows it: with the attributes of a `SpringSupport`.
-
-    The stiffness [N/m] is that along the axes of the picture.
-    """
-
-    rod: str
-    nodes: NDArray[np.int32]
-    weights: NDArray[np.float64]
-    stiffness: list[float]
-    rotational_stiffness: float
-
-
 def draw_supports(
     axes: Axes,
     rods: Iterable[Rod],
-    held: Iterable[HeldNode | HeldPlace],
+    held: Iterable[HeldNode],
     positions: NDArray[np.float64],
 ) -> None:
     """Draw the usual symbol at each held node.
@@ -98,7 +73,7 @@ def draw_supports(
     held
         The held nodes, from `Result.held_nodes` or ``der.held_nodes(scenario, time)``.
     positions
-        Positions of all nodes at that time [m], shape (nodes, dim); the view is along z.
+        Positions of all nodes at that time [m], shape (nodes, 2).
     """
     ends = {(rod.name, int(rod.nodes[i])): i for rod in rods if not rod.closed for i in (0, -1)}
     for node in held:
@@ -109,7 +84,7 @@ def draw_supports(
 def draw_springs(
     axes: Axes,
     rods: Iterable[Rod],
-    springs: Iterable[SpringSupport | SpringPlace],
+    springs: Iterable[SpringSupport],
     positions: NDArray[np.float64],
 ) -> None:
     """Draw a zigzag line to the ground for each spring, and a spiral for one against turning.
@@ -163,7 +138,7 @@ def draw_foundations(
     by_name = {rod.name: rod for rod in rods}
     for part in parts:
         rod = by_name[part.rod]
-        down = ground_direction(part, rod, positions[:, :2])
+        down = ground_direction(part, rod, positions)
         angle = float(np.arctan2(down[0], -down[1]))
         count = max(2, round(_FOUNDATION_SPRINGS * (part.end - part.start) / rod.length))
         for number, at in enumerate(np.linspace(part.start, part.end, count)):
@@ -192,7 +167,7 @@ def _draw_symbol(
     )
 
 
-def _symbol(held: HeldNode | HeldPlace, end: int | None) -> tuple[Path, float]:
+def _symbol(held: HeldNode, end: int | None) -> tuple[Path, float]:
     """Return a symbol and its turn [rad]; `end` is 0 at a rod's start, -1 at its end."""
     if held.tangent_angle is not None:
         if end is None:

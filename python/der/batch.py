@@ -334,8 +334,22 @@ class Batch(_core.Batch):
         labels = [f"member {n}{' (failed)' if self.failed[n] else ''}" for n in numbers]
         first = self.scenario(numbers[0])
         title = f"{first.title}: {len(numbers)} of {count} members"
-        now = float(self.time[numbers[-1]])
-        return plot_states(first, self.positions[numbers], labels, time=now, title=title)
+        directors = None
+        if self.model.name == "spatial":
+            simulation = _core.Simulation(first)
+            found = []
+            for number in numbers:
+                simulation.restore_state(self.save_state(number))
+                found.append(simulation.directors)
+            directors = np.stack(found)
+        return plot_states(
+            first,
+            self.positions[numbers],
+            labels,
+            directors=directors,
+            time=float(self.time[numbers[-1]]),
+            title=title,
+        )
 
     def __repr__(self) -> str:
         """Return title, time and size in one line."""

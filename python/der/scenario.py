@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from der._core import Model, Scenario
+from der._core import Model, Scenario, Simulation
 from der.examples import scene_path
 from der.html import card
 
@@ -110,7 +110,13 @@ def _repr_html_(self: Scenario) -> str:
     return card(
         self.title,
         facts,
-        lambda: plot_states(self, model.initial_positions[np.newaxis], ["as drawn"], title=""),
+        lambda: plot_states(
+            self,
+            model.initial_positions[np.newaxis],
+            ["as drawn"],
+            directors=Simulation(self).directors[np.newaxis] if model.name == "spatial" else None,
+            title="",
+        ),
         [[("rod", "nodes", "length [m]"), *rods]],
         self.to_yaml(),
     )

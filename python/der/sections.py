@@ -118,9 +118,11 @@ def directors_along(result: RunData, edge_directors: Array | None = None) -> lis
         upright = np.array([[[0.0, 0.0, 1.0]]])
         rods = result.scenario.to_dict()["rods"]
         return [None if _lies_in_the_plane(rod["cross_section"]) else upright for rod in rods]
-    if result.sections is None:
+    along = edge_directors
+    if along is None and result.sections is not None:
+        along = result.directors
+    if along is None:
         return [None] * len(result.rods)
-    along = result.directors if edge_directors is None else edge_directors
     found: list[Array | None] = []
     first = 0  # edge of the rod
     for rod in result.rods:

@@ -231,7 +231,10 @@ class Simulation(_core.Simulation):
 
         def draw() -> Figure:
             shape = self.positions[np.newaxis].copy()
-            return plot_states(self.scenario, shape, ["now"], time=self.time, title="")
+            directors = self.directors[np.newaxis] if self.model.name == "spatial" else None
+            return plot_states(
+                self.scenario, shape, ["now"], directors=directors, time=self.time, title=""
+            )
 
         values = [(name, f"{value:.6g}") for name, value in self.probes.items()]
         return card(self.scenario.title, self._facts(), draw, [[("probe", "now"), *values]])

@@ -27,10 +27,10 @@ class Screen:
         from matplotlib.backends.backend_agg import FigureCanvasAgg  # here: takes long to load
         from matplotlib.figure import Figure
 
-        from der.plotting.picture import best_plane
+        from der.plotting.space import make_picture
 
-        self._plane = best_plane(batch.positions)
-        start = self._plane.turned(batch.positions[0])[:, :2]
+        self._first = make_picture(batch.result(0))
+        start = self._first.seen(batch.positions[0])
         low, high = start.min(axis=0), start.max(axis=0)
         reach = 0.5 * (float(np.max(high - low)) + sum(rod.length for rod in batch.model.rods))
         figure = Figure(figsize=(_SIZE, _SIZE), dpi=_DPI)
@@ -49,20 +49,19 @@ class Screen:
         points
             Points [m] that are marked, shape (points, dim).
         """
-        from der.plotting import PALETTE, draw_shapes, draw_supports, style
-        from der.plotting.picture import Picture
+        from der.plotting import PALETTE, style
+        from der.plotting.space import make_picture
+        from der.scene_loads import ActingLoads
 
-        picture = Picture(batch.result(0))
-        picture.plane = self._plane
-        positions, rods, axes = picture.positions[0], picture.rods, self._axes
+        picture, axes = make_picture(batch.result(0)), self._axes
+        picture.look_as(self._first)
+        shape = picture.shape(0, PALETTE[0])
         with style():
             axes.clear()
             axes.set_axis_off()
+            picture.draw(axes, [shape], shape, ActingLoads())
             axes.set(**self._limits)
-            half_widths = picture.half_widths(0, positions)
-            draw_shapes(axes, rods, positions, PALETTE[0], half_widths=half_widths)
-            draw_supports(axes, rods, picture.held_nodes(0), positions)
-            marked = self._plane.turned(points)
+            marked = picture.seen(points)
             axes.plot(marked[:, 0], marked[:, 1], "o", color=PALETTE[1], fillstyle="none")
             self._canvas.draw()
         drawn: NDArray[np.uint8] = np.array(self._canvas.buffer_rgba())[:, :, :3]

@@ -33,6 +33,7 @@ from der.plotting.style import (
 from der.probe_series import Probes
 from der.run_data import RunData
 from der.scene_loads import ActingLoads
+from der.sections import directors_along
 
 Array = NDArray[np.float64]
 What = Literal["overview", "shapes", "probes"]
@@ -124,6 +125,7 @@ def plot_states(
     positions: Array,
     labels: Sequence[str],
     *,
+    directors: Array | None = None,
     time: float = 0.0,
     title: str | None = None,
 ) -> Figure:
@@ -137,29 +139,37 @@ def plot_states(
         Positions of the nodes [m], shape (shapes, nodes, dim).
     labels
         What the legend calls each shape.
+    directors
+        Director 1 of the edges of each shape, shape (shapes, edges, 3), in the model ``spatial``.
     time
         When supports and loads stand as they are drawn [s].
     title
         In place of the scene's title.
     """
     count = len(positions)
-    picture = Picture(
-        RunData(
-            scenario=scenario,
-            times=np.full(count, time),
-            steps=np.zeros(count, dtype=np.int64),
-            positions=positions,
-            velocities=np.zeros_like(positions),
-            energies={},
-            work={},
-            probes=Probes(),
-            summary={},
-        )
+    states = RunData(
+        scenario=scenario,
+        times=np.full(count, time),
+        steps=np.zeros(count, dtype=np.int64),
+        positions=positions,
+        velocities=np.zeros_like(positions),
+        energies={},
+        work={},
+        probes=Probes(),
+        summary={},
     )
-    shapes = list(picture.positions)
+    picture = make_picture(states)
+    along = directors_along(states, directors)
+    shapes = [
+        replace(
+            picture.shape(number, colour, label),
+            directors=[one if one is None else one[number % len(one)] for one in along],
+        )
+        for number, (colour, label) in enumerate(zip(time_colours(count), labels, strict=True))
+    ]
     with style():
-        figure, (axes,) = _figure([_shape_height(picture, shapes, count - 1)])
-        _draw_shape_panel(axes, picture, shapes, labels, range(count))
+        figure, (axes,) = _figure([_shape_height(picture, shapes)])
+        _draw_shape_panel(axes, picture, shapes)
         lines = wrapped(scenario.title if title is None else title, AXES_TITLE, _WIDTH - _LEFT)
         axes.set_title("\n".join(lines), pad=10, parse_math=False)
         make_exactly_equal(figure, axes)

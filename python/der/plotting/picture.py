@@ -75,6 +75,13 @@ class Picture:
         more = room_for_loads(self.rods, loads, shapes[-1].positions, point)
         return np.vstack([low, more]).min(axis=0), np.vstack([high, more]).max(axis=0)
 
+    def seen(self, points: Array) -> Array:
+        """Return where points [m] are in the picture, shape (points, 2)."""
+        return points
+
+    def look_as(self, other: Picture) -> None:
+        """Look from where another picture of the scene does."""
+
     def draw(self, axes: Axes, shapes: Sequence[Shape], at: Shape, loads: ActingLoads) -> None:
         """Draw shapes, and supports, actuation and these loads on the one `at`."""
         for shape in shapes:

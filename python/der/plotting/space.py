@@ -112,6 +112,15 @@ class SpatialPicture(Picture):
             high = high + point * np.array([20.0, 14.0])
         return low, high
 
+    def seen(self, points: Array) -> Array:
+        """Return where points [m], shape (points, 3), are in the picture, shape (points, 2)."""
+        return self.camera.project(points)[:, :2]
+
+    def look_as(self, other: Picture) -> None:
+        """Look from where another picture of the scene does."""
+        assert isinstance(other, SpatialPicture)
+        self.camera, self.floor, self.size = other.camera, other.floor, other.size
+
     def draw(self, axes: Axes, shapes: Sequence[Shape], at: Shape, loads: ActingLoads) -> None:
         """Draw solids; shapes with another line than ``-`` are that line."""
         solid = [shape for shape in shapes if shape.linestyle == "-"]

@@ -64,6 +64,7 @@ def test_probes_of_runs_without_any_and_of_runs_that_are_not_over(tube, tmp_path
     ["beam_modes", "euler_buckling", "snap_through_arch", "simply_supported", "twisted_ring"],
 )
 def test_runs_scenarios_and_simulations_show_themselves(name):
+    open_before = plt.get_fignums()
     scenario = der.load(f"example:{name}")
     simulation = der.Simulation(scenario)
     for thing in (scenario, simulation, simulation.run(warns=False)):
@@ -74,7 +75,7 @@ def test_runs_scenarios_and_simulations_show_themselves(name):
         assert len(np.unique(pixels.reshape(-1, pixels.shape[-1]), axis=0)) > 20
         assert html.startswith(f"<div><div><strong>{scenario.title}</strong>")
         assert html.count("<div>") == html.count("</div>")
-    assert plt.get_fignums() == []
+    assert plt.get_fignums() == open_before
 
 
 def test_texts_are_escaped(tube):
@@ -123,6 +124,7 @@ def test_text_tables_are_aligned():
 
 
 def test_sweeps_show_their_first_members(tube):
+    open_before = plt.get_fignums()
     tube["analysis"] = "static"
     del tube["time"], tube["output"]["every"]
     moduli = np.linspace(1e9, 2e9, 12)
@@ -134,7 +136,7 @@ def test_sweeps_show_their_first_members(tube):
     assert float(rows[0][2]) == pytest.approx(sweep["deflection"][0], rel=1e-5)
     assert len(pictures(html)) == 1
     assert "13 members, 1 failed (invalid_scene 1)" in html
-    assert plt.get_fignums() == []
+    assert plt.get_fignums() == open_before
 
 
 def test_view_without_a_path_is_a_temporary_file(result, monkeypatch):

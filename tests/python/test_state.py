@@ -104,6 +104,7 @@ FAILURES = {
         (raising_force, lambda s: s.record()),
         (nothing, lambda s: s.record(out="/dev/null/nowhere")),
     ],
+    "recording": [(nothing, lambda s: s.recording(1))],
     "prescribe": [
         (nothing, lambda s: s.prescribe(0, x=1.0)),
         (nothing, lambda s: s.prescribe(7, y=1.0)),

@@ -7,6 +7,7 @@
 
 #include "der/catalog/quantities.hpp"
 #include "der/scenario/find_support.hpp"
+#include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/suggestion.hpp"
 

@@ -347,8 +347,7 @@ class Network:
         start = np.repeat(self._starts(self.w)[np.newaxis].astype(complex), len(places), axis=0)
         lanes = np.arange(len(places))
         end = self._shoot(start, spans[:, np.newaxis, np.newaxis], 1.0)
-        found: Array = end[lanes, :, piece].T.real
-        return found
+        return np.asarray(end[lanes, :, piece].T.real, dtype=float)
 
     def along(self, quantity: str, rod: str, places: Array, side: str = "after") -> Array:
         """A quantity as `der` names it, at arc lengths."""
@@ -356,8 +355,8 @@ class Network:
         section = self.rods[rod]["cross_section"]["stiffness"]
         tension = H * np.cos(theta) + V * np.sin(theta)
         curvature = M / section["EI"] + self.rods[rod].get("natural_curvature", 0.0)
-        values = {"x": x, "y": y, "slope": theta, "moment": M, "tension": tension}
-        values |= {"strain": tension / section["EA"], "curvature": curvature}
+        values: dict[str, Array] = {"x": x, "y": y, "slope": theta, "moment": M}
+        values |= {"tension": tension, "strain": tension / section["EA"], "curvature": curvature}
         return values[quantity]
 
     def read(self, quantity: str, rod: str, at: Any, side: str = "after") -> float:

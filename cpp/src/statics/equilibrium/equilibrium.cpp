@@ -208,6 +208,12 @@ class EquilibriumSearch {
       }
     }
     shape = std::move(plain);
+    stiffness_.evaluate(loads.at(model_, shape));
+    const Stability stability = stiffness_.stability();
+    if (stability.neutral_directions > 0 && stability.unstable_directions == 0) {
+      // Plain steps wander along neutral directions, and steps downhill do not.
+      newton_.balance_nearby(loads, shape);
+    }
     return std::nullopt;
   }
 

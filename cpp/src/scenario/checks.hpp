@@ -98,6 +98,8 @@ void check_loads(CheckContext& context);
 void check_actuations(CheckContext& context);
 /// That no two parts of the scene which programs call by name have the same.
 void check_names(CheckContext& context);
+/// Whether what a continuation varies is there.
+void check_continuation(CheckContext& context);
 void check_time(CheckContext& context);
 void check_probes(CheckContext& context);
 /// Checks that the model that the scene asks for can represent it, and that this version has in

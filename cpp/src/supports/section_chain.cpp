@@ -15,7 +15,8 @@ using Link = SectionChain::Link;
 
 /// Framed vertices by the entries of their reference twists.
 std::vector<const FramedVertex*> vertices_by_twist(const Model& model) {
-  std::vector<const FramedVertex*> found(to_size(model.initial_frames.size()), nullptr);
+  std::vector<const FramedVertex*> found(static_cast<std::size_t>(model.initial_frames.size()),
+                                         nullptr);
   for (const FramedVertex& vertex : model.framed_vertices) {
     found[to_size(vertex.twist())] = &vertex;
   }

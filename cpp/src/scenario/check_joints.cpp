@@ -13,7 +13,7 @@ namespace {
 
 /// Members of a joint may be apart by this share of the longest of their rods, by rounding.
 constexpr double kApart = 1e-9;
-/// Their initial velocities may differ by this share of them.
+/// Their initial velocities may differ by this share of the largest of their rods.
 constexpr double kSlower = 1e-9;
 
 Path joint_path(int joint) { return {"joints", joint}; }
@@ -85,10 +85,8 @@ class JointCheck {
                            joint.of[k].rod, apart, joint.of.front().rod));
         return false;
       }
-      const Components v = velocity_of(members[k]);
-      const Components v_first = velocity_of(members.front());
-      const double speed = distance(v_first, Components(v_first.size(), 0.0));
-      if (distance(v, v_first) > kSlower * speed) {
+      const double slower = distance(velocity_of(members[k]), velocity_of(members.front()));
+      if (slower > kSlower * std::max(fastest(members[k].rod), fastest(members.front().rod))) {
         report(joint_path(number) / "of" / static_cast<int>(k),
                fmt::format("rods '{}' and '{}' begin with different velocities at the joint: give "
                            "both one 'initial_velocity' there",
@@ -121,6 +119,15 @@ class JointCheck {
     return rod.initial_velocity.empty()
                ? Components(point_of(member).size(), 0.0)
                : rod.initial_velocity[static_cast<std::size_t>(member.node)];
+  }
+  /// The largest initial velocity of a rod's nodes [m/s].
+  double fastest(int rod) {
+    double fastest = 0.0;
+    for (const Components& v :
+         context_.scene.rods[static_cast<std::size_t>(rod)].initial_velocity) {
+      fastest = std::max(fastest, distance(v, Components(v.size(), 0.0)));
+    }
+    return fastest;
   }
   double length_of(const Member& member) {
     return context_.lines[static_cast<std::size_t>(member.rod)]->length();

@@ -556,6 +556,7 @@ def test_pictures_in_space(helix):
     pictures.append(env.render())
     assert (pictures[0] != pictures[1]).sum() > 200
     orange = [picture[..., 0] > picture[..., 2] + 30.0 for picture in pictures]
+    assert min(one.sum() for one in orange) > 20
     np.testing.assert_allclose(*(np.argwhere(one).mean(axis=0) for one in orange), atol=1.0)
 
 

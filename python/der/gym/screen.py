@@ -62,7 +62,8 @@ class Screen:
             picture.draw(axes, [shape], shape, ActingLoads())
             axes.set(**self._limits)
             marked = picture.seen(points)
-            axes.plot(marked[:, 0], marked[:, 1], "o", color=PALETTE[1], fillstyle="none")
+            # Before the rods, which have solid sections in space.
+            axes.plot(*marked.T, "o", color=PALETTE[1], fillstyle="none", zorder=10.0)
             self._canvas.draw()
         drawn: NDArray[np.uint8] = np.array(self._canvas.buffer_rgba())[:, :, :3]
         return drawn

@@ -212,7 +212,8 @@ class EquilibriumSearch {
     const Stability stability = stiffness_.stability();
     if (stability.neutral_directions > 0 && stability.unstable_directions == 0) {
       // Plain steps wander along neutral directions, and steps downhill do not.
-      newton_.balance_nearby(loads, shape);
+      lower = shape;
+      if (!newton_.balance(loads, lower) && change(lower) <= kNear) shape = std::move(lower);
     }
     return std::nullopt;
   }

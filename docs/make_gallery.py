@@ -38,6 +38,7 @@ SCENES: dict[str, list[float] | None] = {
     "roll_up": None,
     "natural_curvature": None,
     "elastica": None,
+    "lee_frame": None,
     "snap_through_arch": None,
     "euler_buckling": None,
     "beam_modes": None,

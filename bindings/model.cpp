@@ -47,6 +47,17 @@ std::vector<SpringSupport> springs(const Scenario& scenario) {
   return result;
 }
 
+std::vector<Index> hinges(const Scenario& scenario) {
+  const Model model = build_model(scenario.scene());
+  std::vector<Index> nodes;
+  for (const scenario::Joint& joint : scenario.scene().joints) {
+    if (joint.kind != scenario::JointKind::Hinge) continue;
+    const RodMesh& rod = model.rod(joint.of.front().rod);
+    nodes.push_back(rod.node(nodes_at(joint.of.front().at, rod).front()));
+  }
+  return nodes;
+}
+
 template <class T>
 py::array_t<T> to_array(const std::vector<T>& values) {
   return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
@@ -121,6 +132,8 @@ void bind_spring(py::module_& module) {
             .format(spring.rod, spring.stiffness, spring.rotational_stiffness);
       });
   module.def("springs", &springs, py::arg("scenario"), "Return every spring support of the scene.");
+  module.def("hinges", &hinges, py::arg("scenario"),
+             "Return the row numbers of all hinges in `positions`.");
 }
 
 }  // namespace

@@ -196,6 +196,11 @@ def test_pictures_show_loads_and_clamps_at_joints(tmp_path: Path) -> None:
     result = der.run(der.Scenario.from_dict(scene))
     [held] = result.held_nodes(len(result.times) - 1)
     assert held.tangent_angle == pytest.approx(np.pi / 2 + 0.4)
-    figure = result.plot()
+    scene["joints"][0]["kind"] = "hinge"
+    scene["loads"] = scene["loads"][1:]
+    del scene["output"]
+    figure = der.run(scene).plot()
+    (circles,) = [line for line in figure.axes[0].lines if line.get_gid() == "hinges"]
+    assert circles.get_xydata().shape == (1, 2)
     figure.savefig(tmp_path / "frame.png")
     assert (tmp_path / "frame.png").stat().st_size > 5000

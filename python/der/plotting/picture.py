@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import springs
+from der._core import hinges, springs
 from der.actuated_stretches import ActuatedStretch, actuated_stretches
 from der.plotting.actuation import draw_actuation
 from der.plotting.lengths import label_positions
 from der.plotting.loads import add_gravity_to_legend, draw_loads, room_for_loads
 from der.plotting.shapes import Shape, draw_shapes, limits
-from der.plotting.supports import draw_springs, draw_supports
+from der.plotting.supports import draw_hinges, draw_springs, draw_supports
 from der.scene_loads import ActingLoads, acting_loads
 from der.sections import directors_along
 
@@ -54,6 +54,10 @@ class Picture:
     def _directors(self) -> list[Array | None]:
         return directors_along(self.result)
 
+    @cached_property
+    def _hinges(self) -> list[int]:
+        return hinges(self.result.scenario)
+
     def shape(self, frame: int, colour: ColorType, label: str | None = None) -> Shape:
         """Return the shape at a frame of the run."""
         directors = [one if one is None else one[frame % len(one)] for one in self._directors]
@@ -91,6 +95,8 @@ class Picture:
         draw_actuation(axes, self.rods, self.actuated, at.frame, at.positions)
         draw_supports(axes, self.rods, self.result.held_nodes(at.frame), at.positions)
         draw_springs(axes, self.rods, springs(self.result.scenario), at.positions)
+        if self._hinges:
+            draw_hinges(axes, at.positions[self._hinges])
         draw_loads(axes, self.rods, loads, at.positions)
 
     def add_gravity(self, axes: Axes, gravity: Array) -> None:

@@ -116,6 +116,20 @@ def draw_springs(
                 _draw_symbol(axes, symbol, angle, place, f"spring-{spring.rod}-{number}")
 
 
+def draw_hinges(axes: Axes, places: NDArray[np.float64]) -> None:
+    """Draw a circle at each hinge, at positions [m], shape (hinges, 2)."""
+    axes.plot(
+        *places.T,
+        "o",
+        markersize=0.6 * _UNIT,
+        markerfacecolor="white",
+        markeredgecolor=MUTED,
+        markeredgewidth=0.9,
+        zorder=3.5,
+        gid="hinges",
+    )
+
+
 def draw_foundations(
     axes: Axes,
     rods: Iterable[Rod],

@@ -10,7 +10,7 @@
 namespace der {
 namespace {
 
-using Columns = BorderedLdlt::Columns;
+using BorderedColumns = BorderedLdlt::Columns;
 
 /// Stands for a half-bandwidth or a stride that is only known at run time.
 constexpr Index kAny = -1;
@@ -30,7 +30,7 @@ struct Local<kAny> {
 };
 
 template <Index kWidth, Index kStride>
-Inertia factorize(const Columns& columns, Index any_width, Index any_stride, double* band,
+Inertia factorize(const BorderedColumns& columns, Index any_width, Index any_stride, double* band,
                   double* border, double* corner, double* scratch) {
   const Index width = kWidth == kAny ? any_width : kWidth;
   const Index stride = kStride == kAny ? any_stride : kStride;
@@ -73,7 +73,7 @@ Inertia factorize(const Columns& columns, Index any_width, Index any_stride, dou
 }
 
 template <Index kWidth, Index kStride>
-void forward(const Columns& columns, Index any_width, Index any_stride, const double* band,
+void forward(const BorderedColumns& columns, Index any_width, Index any_stride, const double* band,
              const double* border, double* b) {
   const Index width = kWidth == kAny ? any_width : kWidth;
   const Index stride = kStride == kAny ? any_stride : kStride;
@@ -89,7 +89,7 @@ void forward(const Columns& columns, Index any_width, Index any_stride, const do
 }
 
 template <Index kWidth, Index kStride>
-void backward(const Columns& columns, Index any_width, Index any_stride, const double* band,
+void backward(const BorderedColumns& columns, Index any_width, Index any_stride, const double* band,
               const double* border, double* b) {
   const Index width = kWidth == kAny ? any_width : kWidth;
   const Index stride = kStride == kAny ? any_stride : kStride;
@@ -110,20 +110,20 @@ void backward(const Columns& columns, Index any_width, Index any_stride, const d
 
 // The usual widths are innermost loops.
 template <Index kWidth, Index kStride>
-Inertia factorize_ring(const Columns& columns, Index /*width*/, Index /*stride*/, double* band,
-                       double* border, double* corner, double* scratch) {
+Inertia factorize_ring(const BorderedColumns& columns, Index /*width*/, Index /*stride*/,
+                       double* band, double* border, double* corner, double* scratch) {
   return dispatch_simd([&] {
     return factorize<kWidth, kStride>(columns, kWidth, kStride, band, border, corner, scratch);
   });
 }
 template <Index kWidth, Index kStride>
-void forward_ring(const Columns& columns, Index /*width*/, Index /*stride*/, const double* band,
-                  const double* border, double* b) {
+void forward_ring(const BorderedColumns& columns, Index /*width*/, Index /*stride*/,
+                  const double* band, const double* border, double* b) {
   dispatch_simd([&] { forward<kWidth, kStride>(columns, kWidth, kStride, band, border, b); });
 }
 template <Index kWidth, Index kStride>
-void backward_ring(const Columns& columns, Index /*width*/, Index /*stride*/, const double* band,
-                   const double* border, double* b) {
+void backward_ring(const BorderedColumns& columns, Index /*width*/, Index /*stride*/,
+                   const double* band, const double* border, double* b) {
   dispatch_simd([&] { backward<kWidth, kStride>(columns, kWidth, kStride, band, border, b); });
 }
 template <Index kWidth, Index kStride>

@@ -5,12 +5,14 @@ drawings, the refinement of meshes, the scene reference. A kind without a sample
 """
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import der
 import numpy as np
 import pytest
 from der.accuracy.refinement import with_elements
+from der.plotting.space import make_picture
 from der.scene_loads import WITHOUT_SYMBOL, acting_loads, ground_direction
 from der.viewing.payload import make_payload
 
@@ -112,7 +114,7 @@ def test_a_force_that_follows_is_drawn_as_it_is_turned():
 
 
 def test_springs_and_foundations_in_space_are_drawn():
-    """A rod along y, seen along x: what acts along z is drawn downwards."""
+    """A rod along y: what acts along z is drawn downwards."""
     rod = {**SAMPLES["rods"][0], "points": [[0, 0, 0], [0, 1, 0], [0, 2, 0.3]]}
     del rod["initial_velocity"], rod["spheres"]
     stiffness = {"EA": 100, "EI": 1, "GJ": 1, "mass_per_length": 1}
@@ -133,10 +135,19 @@ def test_springs_and_foundations_in_space_are_drawn():
     assert part.stiffness.tolist() == [0, 0, 20]
     down = ground_direction(part, result.rods[0], result.positions[0])
     assert down.tolist() == [0, 0, -1]
-    axes = result.plot("shapes").axes[0]
-    drawn = [line.get_gid() or "" for line in axes.lines]
-    assert any(gid.startswith("load-rod-foundation") for gid in drawn)
-    assert any(gid.startswith("spring-rod") for gid in drawn)
+    picture = make_picture(result)
+    shape, loads = picture.shape(0, "black"), picture.loads(0)
+
+    def drawn_below_the_rod(loads):
+        points = picture._symbols(shape, loads).corners.reshape(-1, 3)
+        line = result.positions[0]
+        below = points[:, 2] < np.interp(points[:, 1], line[:, 1], line[:, 2]) - 0.05
+        return points[below, 1]
+
+    at_spring = drawn_below_the_rod(replace(loads, foundations=[]))
+    assert np.sum(np.abs(at_spring - result.positions[0, -1, 1]) < 0.1) > 10
+    assert not np.any((at_spring > 0.3) & (at_spring < 1.5))
+    assert np.ptp(drawn_below_the_rod(loads)) > 1.5
     assert make_payload(result)["springs"][0]["along"] == [[0, 0, -1]]
 
 

@@ -47,7 +47,7 @@ Format<Ellipse> ellipse_format() {
 
 /// One time for all, or each by itself. Nothing rings for longer than a few of the largest, about
 /// eleven days.
-Format<DampingTimes> damping_format() {
+Format<DampingTimes> damping_times_format() {
   constexpr double longest = 1e6;
   const Format<double> time = number("s", Range{0.0, false, longest, false});
   const Format<DampingTimes> each =
@@ -106,7 +106,7 @@ Format<Stiffness> stiffness_format() {
                     "Mass moment of inertia about the tangent per rest length, for the spin of "
                     "sections.",
                     "that of a homogeneous section, mass_per_length (EI1 + EI2)/EA")
-          .optional("damping", &Stiffness::damping, damping_format(), kDamping, "none")
+          .optional("damping", &Stiffness::damping, damping_times_format(), kDamping, "none")
           .check(check_stiffness));
 }
 
@@ -139,7 +139,7 @@ Format<Material> material_format() {
           .at_most_one({{"poissons_ratio"}, {"shear_modulus"}})
           .required("density", &Material::density, number("kg/m^3", not_negative()),
                     "Density; 0 for a rod whose mass is only in its spheres.")
-          .optional("damping", &Material::damping, damping_format(), kDamping, "none"));
+          .optional("damping", &Material::damping, damping_times_format(), kDamping, "none"));
 }
 
 Format<Sphere> sphere_format() {

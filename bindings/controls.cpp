@@ -83,7 +83,7 @@ void set(PySimulation& simulation, const Text& name, const py::object& value,
   }
 }
 
-py::object value(const PySimulation& simulation, const Text& given_name) {
+py::object value(PySimulation& simulation, const Text& given_name) {
   const Simulation& engine = simulation.engine();
   const std::string_view name = given_name.value("the name");
   const Simulation::Settable& found = engine.settable(name);
@@ -133,7 +133,7 @@ void prescribe(PySimulation& simulation, const WholeNumber& given_support,
   }
 }
 
-py::dict prescribed(const PySimulation& simulation, const WholeNumber& given_support) {
+py::dict prescribed(PySimulation& simulation, const WholeNumber& given_support) {
   const std::size_t support = support_number(given_support);
   const Simulation& engine = simulation.engine();
   py::dict values;
@@ -160,7 +160,7 @@ void bind_controls(py::class_<PySimulation>& cls) {
            "Present value of what has a name: a number if it has one component, otherwise an array "
            "for a vector\nand a dict by component for a support. DerError as `set`.")
       .def_property_readonly(
-          "names", [](const PySimulation& s) { return settable_names(s.engine().model()); },
+          "names", [](PySimulation& s) { return settable_names(s.engine().model()); },
           "What `set` can set: by name, the unit of each component, as "
           "``{\"push\": {\"x\": \"N\", \"y\": \"N\"}}``.")
       .def(

@@ -40,8 +40,11 @@ class PySimulation {
                  const std::optional<std::filesystem::path>& out, py::handle self);
   void restore(const State& saved);
 
-  [[nodiscard]] Simulation& engine() { return engine_; }
-  [[nodiscard]] const Simulation& engine() const { return engine_; }
+  /// As it is to be read: rotations of joints follow what Python has written.
+  [[nodiscard]] Simulation& engine() {
+    if (!busy_) engine_.follow_writes();
+    return engine_;
+  }
   [[nodiscard]] ForceFunctions& forces() { return forces_; }
   [[nodiscard]] const ForceFunctions& forces() const { return forces_; }
 

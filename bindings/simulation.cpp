@@ -68,19 +68,19 @@ Array section_view(const py::object& self) {
 }
 
 template <Vec3 Momenta::* part>
-Array momentum(const PySimulation& simulation) {
+Array momentum(PySimulation& simulation) {
   const Momenta all = momenta(simulation.engine().model(), simulation.engine().state());
   return Array(py::ssize_t{3}, (all.*part).data());
 }
 
-Array present_directors(const PySimulation& simulation) {
+Array present_directors(PySimulation& simulation) {
   const Vector directors = directors_of(simulation.engine().model(), simulation.engine().state());
   Array result({static_cast<py::ssize_t>(directors.size() / 3), py::ssize_t{3}}, directors.data());
   result.attr("setflags")(false);
   return result;
 }
 
-py::tuple reaction_vectors(const PySimulation& simulation) {
+py::tuple reaction_vectors(PySimulation& simulation) {
   const Simulation& engine = simulation.engine();
   Reactions reader(engine.scenario().scene(), engine.model());
   const std::vector<Reaction>& reactions = reader.evaluate(engine.model(), engine.state());
@@ -96,7 +96,7 @@ py::tuple reaction_vectors(const PySimulation& simulation) {
                         vectors(&Reaction::moment));
 }
 
-py::tuple actuation_values(const PySimulation& simulation) {
+py::tuple actuation_values(PySimulation& simulation) {
   const Simulation& engine = simulation.engine();
   ActuationForces reader(engine.model());
   const std::vector<ActuationForce>& forces = reader.evaluate(engine.model(), engine.state());
@@ -107,7 +107,7 @@ py::tuple actuation_values(const PySimulation& simulation) {
   return py::make_tuple(stretches_of(forces), table);
 }
 
-py::dict probe_values(const PySimulation& simulation) {
+py::dict probe_values(PySimulation& simulation) {
   const Simulation& engine = simulation.engine();
   py::dict values;
   for (const Probe& probe : make_probes(engine.scenario().scene(), engine.model())) {
@@ -261,7 +261,7 @@ void bind_arrays(PySimulationClass& cls) {
           "of sections\nincluded.")
       .def_property_readonly(
           "free_dofs",
-          [](const PySimulation& s) {
+          [](PySimulation& s) {
             const std::vector<Index>& free = s.engine().model().dofs.free();
             return py::array_t<Index>(static_cast<py::ssize_t>(free.size()), free.data());
           },
@@ -271,65 +271,61 @@ void bind_arrays(PySimulationClass& cls) {
           "its end\nare places in `theta`.")
       .def(
           "gradient",
-          [](const PySimulation& s) {
+          [](PySimulation& s) {
             const Vector gradient = s.engine().gradient();
             return Array(gradient.size(), gradient.data());
           },
           "Gradient [N] of the potential energy of rods and loads, `extra_force` included, at the\n"
           "present state, shape (free,): zero in an equilibrium.")
       .def(
-          "lower_hessian", [](const PySimulation& s) { return to_columns(s.engine().hessian()); },
+          "lower_hessian", [](PySimulation& s) { return to_columns(s.engine().hessian()); },
           "Lower triangle of the Hessian [N/m] over the free degrees of freedom, in compressed\n"
           "columns: values, rows, column starts. `hessian` makes a matrix of it.")
       .def(
-          "lower_mass", [](const PySimulation& s) { return to_columns(s.engine().mass()); },
+          "lower_mass", [](PySimulation& s) { return to_columns(s.engine().mass()); },
           "Lower triangle of the mass matrix [kg], as `lower_hessian`. `mass` makes a matrix of "
           "it.");
 }
 
 void bind_progress(PySimulationClass& cls) {
   cls.def_property_readonly(
-         "time", [](const PySimulation& s) { return s.engine().state().time; },
-         "Simulated time [s].")
+         "time", [](PySimulation& s) { return s.engine().state().time; }, "Simulated time [s].")
       .def_property_readonly(
-          "step_count", [](const PySimulation& s) { return s.engine().state().step; },
+          "step_count", [](PySimulation& s) { return s.engine().state().step; },
           "Time steps from time 0 to now.")
       .def_property_readonly(
-          "total_steps", [](const PySimulation& s) { return s.engine().plan().total_steps; },
+          "total_steps", [](PySimulation& s) { return s.engine().plan().total_steps; },
           "Time steps from time 0 to the scene's duration; 0 with a tolerance: not known.")
       .def_property_readonly(
-          "time_step", [](const PySimulation& s) { return s.engine().plan().step; },
+          "time_step", [](PySimulation& s) { return s.engine().plan().step; },
           "Length of a time step [s]; 0 with a tolerance.")
       .def_property_readonly(
-          "finished", [](const PySimulation& s) { return s.engine().finished(); },
+          "finished", [](PySimulation& s) { return s.engine().finished(); },
           "Whether the scene's duration is reached. `step` goes on beyond it.")
       .def_property_readonly(
-          "counters", [](const PySimulation& s) { return s.engine().counters(); },
+          "counters", [](PySimulation& s) { return s.engine().counters(); },
           "Cost of the simulation so far.");
 }
 
 void bind_facts(PySimulationClass& cls) {
   cls.def_property_readonly(
-         "scenario", [](const PySimulation& s) { return s.engine().scenario(); },
+         "scenario", [](PySimulation& s) { return s.engine().scenario(); },
          "The scenario it was made from.")
       .def_property_readonly(
-          "model", [](const PySimulation& s) -> const Model& { return s.engine().model(); },
+          "model", [](PySimulation& s) -> const Model& { return s.engine().model(); },
           "Everything that stays constant: the chosen model and why, rods, degrees of freedom.")
       .def_property_readonly(
-          "integrator",
-          [](const PySimulation& s) { return std::string(s.engine().integrator().name); },
+          "integrator", [](PySimulation& s) { return std::string(s.engine().integrator().name); },
           "Name of the time integrator.")
       .def_property_readonly(
-          "linear_solver",
-          [](const PySimulation& s) { return std::string(s.engine().linear_solver()); },
+          "linear_solver", [](PySimulation& s) { return std::string(s.engine().linear_solver()); },
           "Name of the linear solver.")
       .def_property_readonly(
-          "linear_solver_reason",
-          [](const PySimulation& s) { return s.engine().linear_solver_reason(); },
+          "linear_solver_reason", [](PySimulation& s) { return s.engine().linear_solver_reason(); },
           "Why this linear solver was taken.")
       .def_property_readonly(
           "energies",
-          [](const PySimulation& s) { return energies(s.engine().model(), s.engine().state()); },
+          [](PySimulation& s) { return energies(s.engine().model(), s.engine().state()); },
           "Energies of the present state [J].")
       .def("reaction_vectors", &reaction_vectors,
            "Places of the supports (number, rod, arc length [m]), and points [m], forces [N] and "
@@ -436,7 +432,7 @@ void bind_actions(PySimulationClass& cls) {
       .def("__repr__", [](const py::object& self) {
         // Tracebacks print objects whose constructor has failed, too.
         if (!py::detail::is_holder_constructed(self.ptr())) return py::str("<der.Simulation>");
-        const Simulation& engine = self.cast<const PySimulation&>().engine();
+        const Simulation& engine = self.cast<PySimulation&>().engine();
         return py::str("<der.Simulation of {!r}: {} nodes, t = {:.6g} s, step {} of {}>")
             .format(engine.scenario().scene().title, engine.model().num_nodes, engine.state().time,
                     engine.state().step, engine.plan().total_steps);

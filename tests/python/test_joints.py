@@ -164,6 +164,66 @@ def test_rods_spin_about_their_joint_as_they_are_drawn() -> None:
         der.Simulation(scene)
 
 
+@pytest.mark.parametrize("angle", [0.4, 2.0, 5.0, 8.0])
+def test_joints_follow_written_shapes(angle: float) -> None:
+    """A frame that is turned as a whole has no bending, and its joint has turned with it."""
+    scene = in_motion()
+    del scene["loads"], scene["supports"]
+    simulation = der.Simulation(scene)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    simulation.positions[...] = simulation.positions @ np.array([[cosine, sine], [-sine, cosine]])
+    turned = np.arctan2(sine, cosine)
+    assert simulation.energies.bend == pytest.approx(0, abs=1e-20)
+    assert simulation.probes["turn"] == pytest.approx(turned, abs=1e-13)
+    assert np.abs(simulation.gradient()).max() < 1e-8
+    batch = der.Batch(scene, 1)
+    batch.positions[0] = simulation.positions
+    assert batch.probes["turn"][0] == pytest.approx(turned, abs=1e-13)
+
+
+def wound(**changes: Any) -> dict[str, Any]:
+    """Two rods in line, coiled up by a clamp and a rotational spring: an arc of any angle."""
+    scene = frame(21) | {
+        "supports": [
+            {"rod": "column", "at": "start", "clamp": True, "prescribe": {"angle": 9.0}},
+            {"rod": "beam", "at": "end", "spring": {"rotational_stiffness": 0.25}},
+        ],
+        "loads": [],
+    }
+    scene["rods"][0] |= {"from": [0, 0], "to": [0.5, 0]}
+    scene["rods"][1] |= {"from": [0.5, 0], "to": [1, 0]}
+    return scene | changes
+
+
+def test_whole_turns_of_joints_count_in_statics_and_in_written_shapes() -> None:
+    """A moment 9 / (1 / EI + 1 / k) bends the rod to an arc: EI = L = 1, k = 0.25."""
+    moment = 9.0 / (1.0 + 4.0)
+    found = der.Simulation(wound())
+    assert found.equilibrium().stability == "stable"
+    assert found.probes["turn"] == pytest.approx(9.0 - 0.5 * moment, rel=1e-9)
+    written = der.Simulation(wound())
+    written.positions[...] = found.positions
+    assert written.probes["turn"] == pytest.approx(found.probes["turn"], rel=1e-12)
+    assert written.energies.total == pytest.approx(9.0 * moment / 2, rel=1e-9)
+    assert written.equilibrium().stability == "stable"
+    assert written.probes["turn"] == pytest.approx(found.probes["turn"], rel=1e-12)
+
+
+@pytest.mark.parametrize("quantity", ["slope", "moment", "tension", "tx"])
+def test_what_each_rod_has_for_itself_is_not_read_at_a_joint(quantity: str) -> None:
+    scene = frame(output={"probes": {"p": {"joint": "corner", "quantity": quantity}}})
+    with pytest.raises(der.SceneError, match="give 'rod' and 'at' in place of 'joint'"):
+        der.Simulation(scene)
+
+
+def test_a_study_leaves_out_what_scenes_with_joints_do_not_have() -> None:
+    scene = in_motion(duration=0.02)
+    study = der.study(scene, nodes=[11], steps=[0.01])
+    tried = {row.stepper for row in study.rows}
+    assert "newmark" in tried
+    assert "energy_momentum" not in tried
+
+
 def test_members_of_a_batch_are_simulations() -> None:
     batch = der.Batch(in_motion(), 5, 2)
     batch.step(7)

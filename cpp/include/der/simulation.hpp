@@ -99,6 +99,9 @@ class Simulation {
   /// Whether a program has written positions or velocities since the last step, or numbers that are
   /// not finite.
   [[nodiscard]] bool has_external_writes() const;
+  /// To be called before joints are read that a program may have moved: their rotations follow the
+  /// positions that it has written.
+  void follow_writes();
 
   /// Takes the present state as the start of a motion: of a new ledger, with no steps before it.
   void start_anew();

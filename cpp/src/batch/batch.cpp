@@ -388,6 +388,7 @@ void Batch::write_rows(std::size_t number) {
 
 void Batch::read_probes(std::size_t number) {
   const Member& member = members_[number];
+  member.simulation->follow_writes();
   for (std::size_t i = 0; i < member.probes.size(); ++i) {
     probes_(static_cast<Index>(i), to_row(number)) =
         member.probes[i].value(member.simulation->model(), member.simulation->state());

@@ -70,6 +70,10 @@ class ProbeCheck {
                          fmt::join(quantities_of(of_support ? QuantityKind::Support
                                                             : QuantityKind::Actuation),
                                    ", ")));
+    } else if (probe_.joint && kind != QuantityKind::Position && kind != QuantityKind::Velocity) {
+      report(path_, fmt::format("'{}' is not one for all rods of joint '{}': give 'rod' and 'at' "
+                                "in place of 'joint'",
+                                probe_.quantity, *probe_.joint));
     } else if (kind == QuantityKind::Energy) {
       check_energy();
     } else if (kind == QuantityKind::Ring) {
@@ -131,7 +135,11 @@ class ProbeCheck {
                                 probe_.quantity));
     } else if (std::none_of(joint->of.begin(), joint->of.end(),
                             [&](const JointMember& member) { return member.rod == *probe_.leg; })) {
-      report(path_ / "leg", fmt::format("rod '{}' is not in joint '{}'", *probe_.leg, joint->name));
+      std::vector<std::string> rods;
+      for (const JointMember& member : joint->of) rods.push_back(member.rod);
+      report(path_ / "leg",
+             fmt::format("rod '{}' is not in joint '{}', which has {}{}", *probe_.leg, joint->name,
+                         fmt::join(rods, ", "), did_you_mean(*probe_.leg, rods)));
     }
   }
 

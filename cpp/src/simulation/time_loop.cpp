@@ -90,6 +90,13 @@ void Simulation::enter_writes() {
   energy_monitor_.enter_written(before, state_);
 }
 
+void Simulation::follow_writes() {
+  if (!model_.has_rotations() || !energy_monitor_.has_written_shape(state_)) return;
+  if (!find_nonfinite().empty()) return;
+  follow_written(model_, state_);
+  settle_rotations();
+}
+
 void Simulation::follow_written_shape(State& state, const CancelCallback& beat) const {
   der::follow_written_shape(model_, *assembler_, *solver_.solver,
                             energy_monitor_.has_written_angles(state), beat, state);

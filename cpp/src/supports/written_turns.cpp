@@ -1,6 +1,8 @@
 #include "der/supports/written_turns.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "der/core/constants.hpp"
@@ -74,6 +76,55 @@ void count_along(const RodMesh& rod, const Model& model, State& state) {
   }
 }
 
+/// Moves the rotations of joints to a written shape, to within the bending of one edge. Whole turns
+/// count along rods, from rod to rod, from rotations that are held; where none is, from one that
+/// stays within half a turn of where it was.
+void count_rotations(const Model& model, Vector& positions) {
+  struct End {
+    std::size_t rod;
+    Index rotation;  // degree of freedom
+    double turned;   // its edge against the first of its rod [rad]
+  };
+  std::vector<End> ends;
+  std::vector<double> base;  // by which the first edge of each rod has turned [rad]
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    const RodMesh& rod = model.rods[i];
+    const Vector turned = turned_along(rod, model, positions);
+    const auto add = [&](const LegEnd& end, Index edge) {
+      if (end.rotation >= 0) ends.push_back({i, model.dofs.rotation(end.rotation), turned[edge]});
+    };
+    for (const Leg& leg : rod.legs) {
+      add(leg.start, leg.first);
+      add(leg.end, leg.last - 1);
+    }
+    const Edge first = rod.edge(0, model);
+    base.push_back(
+        angle_between(along_edge(first, model.initial_positions), along_edge(first, positions)));
+  }
+  std::vector<bool> counted(base.size(), false);
+  std::vector<bool> known(to_size(model.num_dofs()), false);
+  for (const End& end : ends) known[to_size(end.rotation)] = !model.dofs.is_free(end.rotation);
+  const auto count_rod = [&](const End& from) {
+    double& turn = base[from.rod];
+    turn = nearest_turn(turn, positions[from.rotation] - from.turned);
+    counted[from.rod] = true;
+    for (const End& end : ends) {
+      if (end.rod != from.rod || known[to_size(end.rotation)]) continue;
+      positions[end.rotation] = turn + end.turned;
+      known[to_size(end.rotation)] = true;
+    }
+  };
+  const auto count_next = [&](bool from_known) {
+    const auto next = std::find_if(ends.begin(), ends.end(), [&](const End& end) {
+      return !counted[end.rod] && (known[to_size(end.rotation)] || !from_known);
+    });
+    if (next != ends.end()) count_rod(*next);
+    return next != ends.end();
+  };
+  while (count_next(true) || count_next(false)) {
+  }
+}
+
 /// Whether a program has turned clamps at rest, so far that frames do not tell the way.
 bool has_turned_clamps_at_once(const Model& model, const State& state) {
   if (state.last_step > 0.0) return false;
@@ -97,6 +148,7 @@ double angle_of(Index edge, const Model& model, const State& state) {
 }  // namespace
 
 void follow_written(const Model& model, State& state) {
+  if (model.has_rotations()) count_rotations(model, state.positions);
   if (state.followed.size() == 0) return;
   Vector controls;
   evaluate_controls(model, state, state.time, controls);

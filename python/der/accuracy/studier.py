@@ -107,7 +107,7 @@ def study(
     if scene.is_static and (steps is not None or steppers is not None):
         raise ValueError("a static scene has neither steps nor steppers: only nodes can be varied")
     meshes = choose_meshes(scene, nodes)
-    names = choose_steppers(steppers)
+    names = choose_steppers(steppers, scene)
     workers = Workers(jobs, progress)
     workers.expect(1.0, later=_COST_OF_STUDY)
     outcome = workers.run({0: Task([scene])})[0]

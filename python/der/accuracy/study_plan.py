@@ -16,6 +16,7 @@ from der.accuracy.refinement import (
     with_time,
 )
 from der.accuracy.time_levels import find_stepper, fixed_step, stepper_of
+from der.errors import SceneError
 from der.result import Result
 
 _DEFAULT_MESHES = (Fraction(1, 2), Fraction(1), Fraction(2), Fraction(4))
@@ -137,8 +138,8 @@ def reference_meshes(scenario: Scenario, meshes: Sequence[Mesh]) -> dict[int, Sc
     return dict(enumerate(scenarios))
 
 
-def choose_steppers(names: Sequence[str] | None) -> list[str]:
-    """Return the names of the steppers to try: those given, or all.
+def choose_steppers(names: Sequence[str] | None, scenario: Scenario) -> list[str]:
+    """Return the names of the steppers to try: those given, or all that the scene can have.
 
     Raises
     ------
@@ -146,8 +147,18 @@ def choose_steppers(names: Sequence[str] | None) -> list[str]:
         For a name that no stepper has.
     """
     if names is None:
-        return [info.name for info in steppers()]
+        return [info.name for info in steppers() if _can_have(scenario, info.name)]
     return [find_stepper(name).name for name in dict.fromkeys(names)]
+
+
+def _can_have(scenario: Scenario, stepper: str) -> bool:
+    if scenario.is_static:
+        return True
+    try:
+        with_step(scenario, stepper, scenario.duration, scenario.duration)
+    except SceneError:
+        return False
+    return True
 
 
 def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:

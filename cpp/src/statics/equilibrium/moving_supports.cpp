@@ -56,8 +56,11 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads, 
   const Vector controls = before.at(model, shape).controls;
   const Vector rotation =
       target_controls - (as_drawn ? controls : present_controls(model, controls, shape.followed));
-  const double longest = kLargestStep / std::max(largest_edge_change(model, displacement),
-                                                 rotation.lpNorm<Eigen::Infinity>());
+  const Index joints = model.dofs.num_rotations();
+  const double longest =
+      kLargestStep / std::max({largest_edge_change(model, displacement),
+                               displacement.tail(joints).lpNorm<Eigen::Infinity>(),
+                               rotation.lpNorm<Eigen::Infinity>()});
   std::vector<double> whole_turns;
   if (!rotation.isZero(0.0)) {
     whole_turns = planar_whole_turns(model, {shape.positions, target_controls - rotation});

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _SAME = 2e-3  # lines nearer than this, against the extent of the picture, are one
-_ROW = (1.6, 3.2)  # height of a panel [inch], of a planar run the least
+_ROW = (1.6, 3.2)  # height of a panel [inch]
 _WIDTH = 7.2  # of the figure [inch]
 
 
@@ -55,13 +55,13 @@ def plot_modes(picture: Picture) -> Figure:
     room = (_WIDTH - 2.0, _ROW[1])
     low, high = picture.corners(all_sides, loads, room)
     fitting = room[0] * (high - low)[1] / (high - low)[0]
-    row = _ROW[0] if picture.has_axes else float(np.clip(fitting, *_ROW))
+    row = float(np.clip(fitting, *_ROW))
     figure, panels = plt.subplots(
         len(labels),
         1,
         figsize=(_WIDTH, row * len(labels) + 0.6),
         squeeze=False,
-        sharex=picture.has_axes,
+        sharex=picture.has_axes and row == _ROW[0],
         layout="constrained",
     )
     for axes, swing, label in zip(panels[:, 0], swings, labels, strict=True):

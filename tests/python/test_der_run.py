@@ -595,6 +595,26 @@ LONG_ANALYSES = {
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
+def test_a_signal_ends_the_search_for_a_start(tmp_path: Path, number: signal.Signals) -> None:
+    path = tmp_path / "column.yaml"
+    path.write_text(COLUMN + "start_from: equilibrium\ntime: {duration: 1, step: 0.1}\n")
+    changes = ["rods.rod.nodes=8001", "loads.0.point_force.force=[-1e5, 0]"]
+    options = [word for change in changes for word in ("--set", change)]
+    run = start(path, *options, "--out", tmp_path / "out")
+    assert run.stdout is not None
+    assert "Column" in run.stdout.readline()
+    time.sleep(0.3)
+    assert run.poll() is None, run.communicate()
+    run.send_signal(number)
+    sent = time.monotonic()
+    _, stderr = run.communicate(timeout=60)
+    assert time.monotonic() - sent < 2.5  # on a machine that is busy with other tests
+    assert run.returncode == 128 + number
+    assert "nothing was written" in stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
 @pytest.mark.parametrize("case", LONG_ANALYSES)
 def test_a_signal_ends_an_analysis_within_a_second(
     tmp_path: Path, case: str, number: signal.Signals

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <string>
 
 #include "der/app/exit_code.hpp"
@@ -42,10 +43,18 @@ ExitCode fail(ExitCode code, const SceneError& error) {
   return code;
 }
 
+ExitCode exit_code_of_signal() {
+  return InterruptGuard::signal() == SIGTERM ? ExitCode::Terminated : ExitCode::Interrupted;
+}
+
 ExitCode exit_code(const RunOutcome& outcome) {
   if (outcome.ok()) return ExitCode::Completed;
   if (outcome.failed()) return ExitCode::NumericalFailure;
-  return InterruptGuard::signal() == SIGTERM ? ExitCode::Terminated : ExitCode::Interrupted;
+  return exit_code_of_signal();
+}
+
+void stop_at_signal() {
+  if (InterruptGuard::signal() != 0) throw Stopped{};
 }
 
 ExitCode run_scene(const Options& options, Simulation& simulation) {
@@ -64,16 +73,13 @@ ExitCode run_scene(const Options& options, Simulation& simulation) {
     });
     return InterruptGuard::signal() == 0;
   };
-  const auto beat = [] {
-    if (InterruptGuard::signal() != 0) throw Stopped{};
-  };
   // A step may take long, and is saved. An analysis has nothing to save before its end.
   const bool has_steps = simulation.scenario().scene().is_dynamic();
   const InterruptGuard guard(has_steps ? InterruptGuard::Patience::Endless
                                        : InterruptGuard::Patience::OneSecond);
-  const RunOutcome outcome = options.resume
-                                 ? resume_in_folder(folder, simulation, recorder, after_step)
-                                 : run_in_folder(folder, simulation, recorder, after_step, beat);
+  const RunOutcome outcome =
+      options.resume ? resume_in_folder(folder, simulation, recorder, after_step)
+                     : run_in_folder(folder, simulation, recorder, after_step, stop_at_signal);
   progress.clear();
   if (!options.quiet) {
     print(run_report(simulation, recorder, outcome, folder, Style::of(stdout)));
@@ -104,11 +110,19 @@ ExitCode execute(const Options& options) {
     print(scene_head(scenario, Style::of(stdout)));
     std::fflush(stdout);
   }
-  Simulation simulation(scenario);
-  if (options.check && !options.quiet) print(check_report(simulation, Style::of(stdout)));
-  if (options.check) return ExitCode::Completed;
-  if (!options.resume) apply_start(simulation);
-  return run_scene(options, simulation);
+  std::optional<Simulation> simulation;
+  try {
+    // The search for the equilibrium that a motion starts from may take long.
+    const InterruptGuard guard(InterruptGuard::Patience::OneSecond);
+    simulation.emplace(scenario);
+    if (options.check && !options.quiet) print(check_report(*simulation, Style::of(stdout)));
+    if (options.check) return ExitCode::Completed;
+    if (!options.resume) apply_start(*simulation, stop_at_signal);
+    stop_at_signal();
+  } catch (const Stopped&) {
+    return fail(exit_code_of_signal(), "stopped before the run began: nothing was written");
+  }
+  return run_scene(options, *simulation);
 }
 
 ExitCode guarded(const Options& options) {

@@ -9,6 +9,7 @@
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
 #include "der/statics/written_shape.hpp"
+#include "der/supports/written_turns.hpp"
 #include "simulation/undo.hpp"
 
 namespace der {

@@ -1181,3 +1181,24 @@ def test_bars_of_a_rod_whose_natural_curvature_jumps():
     for name, value in exact.items():
         assert abs(found[name].value - value) <= found[name].error_bar + 1e-12, name
         assert abs(found[name].extrapolated - value) <= 0.2 * found[name].error_bar + 1e-9, name
+
+
+@pytest.mark.parametrize("direction", [[0.6, 0.8], [0.8, -0.6], [0.28, 0.96]])
+def test_forces_of_a_rod_that_bends_easily_are_exact_to_rounding_away_from_the_origin(direction):
+    """A straight rod in tension: the reaction is the force; EI/l^3 times rounding of x is left."""
+    start = np.array([1.3, -0.7])
+    end = start + direction
+    stiffness = {"EA": 1e3, "EI": 1, "mass_per_length": 1}
+    line = {"name": "rod", "nodes": 39, "from": start.tolist(), "to": end.tolist()}
+    force = (0.4 * np.array(direction)).tolist()
+    reaction = {"support": 0, "quantity": "reaction_x"}
+    scene = {
+        "rods": [{**line, "cross_section": {"stiffness": stiffness}}],
+        "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+        "loads": [{"point_force": {"rod": "rod", "at": "end", "force": force}}],
+        "analysis": "static",
+        "output": {"probes": {"reaction": reaction}},
+    }
+    found = der.verify(scene)["reaction"]
+    assert found.verdict in ("exact", "rounding")
+    assert found.value == pytest.approx(-force[0], abs=1e-8)

@@ -101,7 +101,7 @@ def _rounding_of_coordinates(result: Result, unit: str) -> float:
             "rad": angle,
             "1/m": curvature,
             "rad/m": curvature,
-            "N": rod.EA * angle,
+            "N": max(rod.EA * angle, rod.EI * curvature / edge),
             "N m": rod.EI * curvature,
         }
         found = max(found, sizes.get(unit, 0.0))

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "der/core/constants.hpp"
@@ -81,47 +81,52 @@ void count_along(const RodMesh& rod, const Model& model, State& state) {
 /// stays within half a turn of where it was.
 void count_rotations(const Model& model, Vector& positions) {
   struct End {
-    std::size_t rod;
     Index rotation;  // degree of freedom
     double turned;   // its edge against the first of its rod [rad]
   };
-  std::vector<End> ends;
-  std::vector<double> base;  // by which the first edge of each rod has turned [rad]
-  for (std::size_t i = 0; i < model.rods.size(); ++i) {
-    const RodMesh& rod = model.rods[i];
+  struct RodEnds {
+    double turned;  // the first edge since the rod was drawn, to within whole turns [rad]
+    std::vector<End> ends;
+  };
+  std::vector<RodEnds> left;  // rods that are to be counted
+  std::vector<bool> known(to_size(model.num_dofs()), false);
+  for (const RodMesh& rod : model.rods) {
     const Vector turned = turned_along(rod, model, positions);
+    std::vector<End> ends;
     const auto add = [&](const LegEnd& end, Index edge) {
-      if (end.rotation >= 0) ends.push_back({i, model.dofs.rotation(end.rotation), turned[edge]});
+      if (end.rotation < 0) return;
+      const Index rotation = model.dofs.rotation(end.rotation);
+      ends.push_back({rotation, turned[edge]});
+      known[to_size(rotation)] = !model.dofs.is_free(rotation);
     };
     for (const Leg& leg : rod.legs) {
       add(leg.start, leg.first);
       add(leg.end, leg.last - 1);
     }
+    if (ends.empty()) continue;
     const Edge first = rod.edge(0, model);
-    base.push_back(
-        angle_between(along_edge(first, model.initial_positions), along_edge(first, positions)));
+    left.push_back(
+        {angle_between(along_edge(first, model.initial_positions), along_edge(first, positions)),
+         std::move(ends)});
   }
-  std::vector<bool> counted(base.size(), false);
-  std::vector<bool> known(to_size(model.num_dofs()), false);
-  for (const End& end : ends) known[to_size(end.rotation)] = !model.dofs.is_free(end.rotation);
-  const auto count_rod = [&](const End& from) {
-    double& turn = base[from.rod];
-    turn = nearest_turn(turn, positions[from.rotation] - from.turned);
-    counted[from.rod] = true;
-    for (const End& end : ends) {
-      if (end.rod != from.rod || known[to_size(end.rotation)]) continue;
-      positions[end.rotation] = turn + end.turned;
+  const auto count = [&](const RodEnds& rod, const End& from) {
+    const double turned = nearest_turn(rod.turned, positions[from.rotation] - from.turned);
+    for (const End& end : rod.ends) {
+      if (!known[to_size(end.rotation)]) positions[end.rotation] = turned + end.turned;
       known[to_size(end.rotation)] = true;
     }
   };
-  const auto count_next = [&](bool from_known) {
-    const auto next = std::find_if(ends.begin(), ends.end(), [&](const End& end) {
-      return !counted[end.rod] && (known[to_size(end.rotation)] || !from_known);
-    });
-    if (next != ends.end()) count_rod(*next);
-    return next != ends.end();
-  };
-  while (count_next(true) || count_next(false)) {
+  while (!left.empty()) {
+    const auto count_if_known = [&](const RodEnds& rod) {
+      const auto from = std::find_if(rod.ends.begin(), rod.ends.end(),
+                                     [&](const End& end) { return known[to_size(end.rotation)]; });
+      if (from == rod.ends.end()) return false;
+      count(rod, *from);
+      return true;
+    };
+    const auto rest = std::remove_if(left.begin(), left.end(), count_if_known);
+    if (rest == left.end()) count(left.front(), left.front().ends.front());
+    left.erase(rest, left.end());
   }
 }
 

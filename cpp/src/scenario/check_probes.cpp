@@ -119,12 +119,9 @@ class ProbeCheck {
              fmt::format("'{}' has the place of its joint: leave this out", probe_.quantity));
       return;
     }
-    const auto& joints = context_.scene.joints;
-    const auto joint = std::find_if(joints.begin(), joints.end(),
-                                    [&](const Joint& each) { return each.name == *probe_.joint; });
-    if (joint == joints.end()) {
-      find_joint(context_, *probe_.joint, path_ / "joint");
-    } else if (quantity == JointQuantity::Rotation) {
+    const Joint* joint = find_joint(context_, *probe_.joint, path_ / "joint");
+    if (joint == nullptr) return;
+    if (quantity == JointQuantity::Rotation) {
       if (joint->kind == JointKind::Rigid) return;
       report(path_ / "quantity",
              fmt::format("each rod has its own rotation in hinge '{}': take the 'slope' of a rod "

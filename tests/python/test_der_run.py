@@ -594,6 +594,17 @@ LONG_ANALYSES = {
 }
 
 
+def end_by_signal(run: subprocess.Popen[str], number: signal.Signals) -> tuple[str, str]:
+    """Send a signal to a run that goes on, and return what it prints; it ends in time."""
+    assert run.poll() is None, run.communicate()
+    run.send_signal(number)
+    sent = time.monotonic()
+    printed = run.communicate(timeout=60)
+    assert time.monotonic() - sent < 2.5  # on a machine that is busy with other tests
+    assert run.returncode == 128 + number
+    return printed
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
 def test_a_signal_ends_the_search_for_a_start(tmp_path: Path, number: signal.Signals) -> None:
     path = tmp_path / "column.yaml"
@@ -604,12 +615,7 @@ def test_a_signal_ends_the_search_for_a_start(tmp_path: Path, number: signal.Sig
     assert run.stdout is not None
     assert "Column" in run.stdout.readline()
     time.sleep(0.3)
-    assert run.poll() is None, run.communicate()
-    run.send_signal(number)
-    sent = time.monotonic()
-    _, stderr = run.communicate(timeout=60)
-    assert time.monotonic() - sent < 2.5  # on a machine that is busy with other tests
-    assert run.returncode == 128 + number
+    _, stderr = end_by_signal(run, number)
     assert "nothing was written" in stderr
     assert not (tmp_path / "out").exists()
 
@@ -630,12 +636,7 @@ def test_a_signal_ends_an_analysis_within_a_second(
     while not (out / "scene.yaml").exists() and time.monotonic() < deadline:
         time.sleep(0.01)
     time.sleep(0.5)
-    assert run.poll() is None, run.communicate()
-    run.send_signal(number)
-    sent = time.monotonic()
-    stdout, stderr = run.communicate(timeout=60)
-    assert time.monotonic() - sent < 2.5  # on a machine that is busy with other tests
-    assert run.returncode == 128 + number
+    stdout, stderr = end_by_signal(run, number)
     assert stderr == ""
     with h5py.File(out / "results.h5") as file:
         assert len(file["time"]) == 0

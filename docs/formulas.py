@@ -10,7 +10,7 @@ from typing import Any
 
 from latex2mathml.converter import convert
 
-# What is code is left alone; a formula neither begins nor ends with a space.
+# Code is left alone. A formula neither begins nor ends with a space.
 _PARTS = re.compile(
     r"(?P<code>^ *```.*?^ *```|`+[^`]+`+)"
     r"|\$\$(?P<block>.+?)\$\$|\$(?P<inline>[^\s$](?:[^$]*?[^\s$])?)\$",

@@ -337,7 +337,7 @@ def _gif_palette(pictures: Iterator[Pixels]) -> Image.Image:
     from der.plotting.style import ACTUATED, LOAD, MUTED, PALETTE
 
     drawn = np.concatenate(list(pictures))
-    # What has a meaning counts, however few pixels it has.
+    # Colours with a meaning count, however few pixels have them.
     meant = [to_rgb(colour) for colour in (PALETTE[0], LOAD, MUTED, "black", *ACTUATED)]
     few = np.rint(255.0 * np.array(meant)).astype(np.uint8)
     bands = np.repeat(few, len(drawn) // 100, axis=0)[:, None].repeat(drawn.shape[1], axis=1)

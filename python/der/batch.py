@@ -290,7 +290,7 @@ class Batch(_core.Batch):
     def result(self, member: int) -> Result:
         """Return the present state of a member as a result with one frame, to draw and save.
 
-        Of a static scene it is the answer of its analysis, searched from the member's state.
+        For a static scene this is the answer of its analysis, searched from the member's state.
 
         Raises
         ------

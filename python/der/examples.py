@@ -32,7 +32,7 @@ def scene_path(text: str) -> str:
     Raises
     ------
     FileNotFoundError
-        If there is no example of that name.
+        If no example has that name.
     """
     if not text.startswith(PREFIX):
         return text

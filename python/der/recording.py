@@ -54,7 +54,7 @@ class Recording:
 def result_of(scenario: Scenario, states: Sequence[State]) -> Result:
     """Return states of simulations of a scene as the frames of a result.
 
-    Of a static scene it is the answer of its analysis, searched from the one state.
+    For a static scene this is the answer of its analysis, searched from the one state.
 
     Raises
     ------

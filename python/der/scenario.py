@@ -44,7 +44,7 @@ def load(scene: SceneLike, overrides: Mapping[str, Any] | None = None, /, **more
     SceneError
         If the scene is not valid, with every diagnostic.
     FileNotFoundError
-        If there is no example of that name.
+        If no example has that name.
     TypeError
         If it is no scene.
 

@@ -18,7 +18,7 @@
 namespace der {
 namespace {
 
-/// What the nodes of one rod are.
+/// The parts that the nodes of one rod play.
 struct RodPoints {
   std::vector<bool> ends_leg;
   std::vector<bool> turns;  ///< whether something holds or loads the rotation there

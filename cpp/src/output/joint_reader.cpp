@@ -67,7 +67,7 @@ std::unique_ptr<ProbeReader> make_joint_reader(const scenario::Probe& probe,
   const auto joint = std::find_if(scene.joints.begin(), scene.joints.end(),
                                   [&](const auto& other) { return other.name == *probe.joint; });
   if (quantity.of_joint == JointQuantity::Rotation) {
-    // Of rods without bending stiffness none follows it.
+    // A rod without bending stiffness does not follow the rotation.
     for (const auto& member : joint->of) {
       const RodMesh& rod = model.rod(member.rod);
       const Index rotation = rod.rotation_at(node_at(member.at, rod));

@@ -21,7 +21,7 @@ namespace {
 /// Reads a moment [N m].
 using MomentReader = std::function<double(const Model& model, const State& state)>;
 
-/// What the nodes and edges of one leg tell.
+/// Reads quantities off the nodes and edges of one leg.
 class LegReader {
  public:
   LegReader(const Leg& leg, const RodMesh& rod, const Model& model)

@@ -307,7 +307,7 @@ std::string why_not_planar(const Scene& scene) {
        why_it_twists(scene)});
 }
 
-/// What stands against `planar` where nobody asked for it. Modes leave the plane in which a
+/// The reason against `planar` where nobody asked for it. Modes leave the plane in which a
 /// structure rests, so that those of a flat scene are those of its neighbours.
 std::string why_not_planar_by_itself(const Scene& scene) {
   if (std::string clause = why_not_planar(scene); !clause.empty()) return clause;

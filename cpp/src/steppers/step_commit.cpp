@@ -59,8 +59,8 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
   state.last_step = dt;
 }
 
-/// What a scheme makes of rotations, which have no inertia, is a guess. Their mean rate is one for
-/// the next step.
+/// A scheme can only guess rotations, which have no inertia. Their mean rate is the guess for the
+/// next step.
 void StepCommit::settle_rotations(double dt, State& state) {
   if (!model_.has_rotations()) return;
   state.work.loads += rotations_.settle(end_.controls, state.extra_force, state.positions);

@@ -60,7 +60,7 @@ using ReactionReading = double (*)(const Reaction& sum);
 /// Reads a quantity of an actuation off what it exerts (output/actuation_forces.hpp).
 using ActuationReading = double (*)(const ActuationForce& force);
 
-/// What a joint tells (output/joint_reader.hpp).
+/// The quantity of a joint that a probe reads (output/joint_reader.hpp).
 enum class JointQuantity { None, Rotation, ForceX, ForceY, MomentZ };
 
 /// One row of the table of quantities: probes, `Replay::along`, exports and views follow it.

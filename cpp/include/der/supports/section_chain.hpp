@@ -22,7 +22,8 @@ struct SectionChain {
 
     [[nodiscard]] bool leaves_clamp() const { return before < 0; }
     [[nodiscard]] bool arrives() const { return after < 0; }
-    /// What its twist strain [rad] has besides the angles of its edges and the reference twist.
+    /// The part of its twist strain [rad] that neither the angles of its edges nor the reference
+    /// twist make.
     [[nodiscard]] double offset(const Vector& controls) const {
       if (held == nullptr) return -vertex->glued;
       const double turned = held->twist_angle(controls);

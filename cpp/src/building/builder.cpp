@@ -49,19 +49,23 @@ bool choose_model(const scenario::Scene& scene, Model& model) {
 /// The nodes of each rod. Rods share those of their joints.
 std::vector<std::vector<Index>> number_nodes(const scenario::Scene& scene, Model& model) {
   std::vector<std::vector<Index>> nodes;
-  for (const auto& rod : scene.rods) nodes.emplace_back(rod.points.size(), -1);
+  std::vector<std::vector<int>> joint_at;  // number of the joint; -1: none
+  for (const auto& rod : scene.rods) {
+    nodes.emplace_back(rod.points.size(), -1);
+    joint_at.emplace_back(rod.points.size(), -1);
+  }
   const std::vector<std::vector<JoinedPlace>> joints = joined_places(scene);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    for (const auto& [rod, at] : joints[j]) joint_at[rod][to_size(at)] = static_cast<int>(j);
+  }
   for (std::size_t rod = 0; rod < nodes.size(); ++rod) {
     for (std::size_t place = 0; place < nodes[rod].size(); ++place) {
       if (nodes[rod][place] >= 0) continue;
       const Index node = model.num_nodes++;
       nodes[rod][place] = node;
-      for (const auto& members : joints) {
-        const auto is_here = [&](const JoinedPlace& member) {
-          return member.rod == rod && to_size(member.place) == place;
-        };
-        if (std::none_of(members.begin(), members.end(), is_here)) continue;
-        for (const auto& [other, at] : members) nodes[other][to_size(at)] = node;
+      if (joint_at[rod][place] < 0) continue;
+      for (const auto& [other, at] : joints[to_size(joint_at[rod][place])]) {
+        nodes[other][to_size(at)] = node;
       }
     }
   }

@@ -1,6 +1,5 @@
 #include "building/actuation.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "der/scenario/support.hpp"
 #include "der/supports/section_spring.hpp"
 #include "model/actuated_turn.hpp"
+#include "model/leg_curvature.hpp"
 
 namespace der {
 namespace {
@@ -102,27 +102,17 @@ class Weights {
     };
     const auto number = static_cast<std::size_t>(&leg - rod_.legs.data());
     for (const bool from_start : {true, false}) {
-      const Index joint = from_start ? leg.first : leg.last;
-      const Index step = from_start ? 1 : -1;
       const Mat3 C = end_compliance(leg, from_start, rod_.edge_length);
       const bool has_cell = (from_start ? leg.start_cell : leg.end_cell) >= 0;
       for (Index i = 0; i < NaturalStrainEntries::kMostAngles && has_cell; ++i) {
-        double turn = 0.0;
-        for (Index k = 0; k <= std::min<Index>(leg.num_cells(), 2); ++k) {
-          turn += static_cast<double>(step) * C(i, k) * at(joint + step * k);
-        }
         const Index entry = rod_.natural_strain_entries.end_cell(number, from_start).entry + i;
-        add({entry}, turn, stretch_.controls[0]);
+        add({entry}, turn_in_end_cell(leg, from_start, C, i, at), stretch_.controls[0]);
       }
     }
     for (Index place = leg.first + 1; place < leg.last; ++place) {
       if (leg.in_end_cell(place)) continue;
-      double turn = rod_.voronoi_length(place) * at(place);
-      // A free end is on the curve, the node next to it beside it.
-      if (place == leg.first + 1)
-        turn += rod_.edge_length[to_size(leg.first)] / 12.0 * at(leg.first);
-      if (place == leg.last - 1) turn += rod_.edge_length[to_size(place)] / 12.0 * at(leg.last);
-      add(rod_.natural_strain_entries.cell(place, false), turn, stretch_.controls[0]);
+      add(rod_.natural_strain_entries.cell(place, false), turn_at_node(leg, rod_, place, at),
+          stretch_.controls[0]);
     }
   }
 

@@ -1,7 +1,7 @@
 #include "building/leg_elements.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "der/core/constants.hpp"
@@ -11,6 +11,7 @@
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "model/leg_curvature.hpp"
 #include "model/reference_edge.hpp"
 
 namespace der {
@@ -38,19 +39,15 @@ class LegBuilder {
 
  private:
   [[nodiscard]] bool has_natural() const { return !rod_.natural_curvature.empty(); }
-  /// Natural curvature at a node [1/m].
-  [[nodiscard]] double natural(Index place) const { return rod_.natural_curvature[to_size(place)]; }
-  [[nodiscard]] double length(Index edge) const { return rod_.edge_length[to_size(edge)]; }
+  /// Natural curvature [1/m] by node.
+  [[nodiscard]] auto natural() const {
+    return [this](Index place) { return rod_.natural_curvature[to_size(place)]; };
+  }
   [[nodiscard]] Vec2 edge(Index number) const { return reference_edge(rod_, number, model_); }
 
   void add_bend(Index place) {
-    double rest = angle_between(edge(place - 1), edge(place));
-    if (has_natural()) {
-      // A free end is on the curve, the node next to it beside it.
-      rest = natural(place) * rod_.voronoi_length(place);
-      if (place == leg_.first + 1) rest += natural(leg_.first) * length(leg_.first) / 12.0;
-      if (place == leg_.last - 1) rest += natural(leg_.last) * length(leg_.last - 1) / 12.0;
-    }
+    const double rest = has_natural() ? turn_at_node(leg_, rod_, place, natural())
+                                      : angle_between(edge(place - 1), edge(place));
     const auto before = rod_.edge_dofs(place - 1, model_);
     const auto after = rod_.edge_dofs(place, model_);
     auto& list = elements_of<PlanarBend<Curvature>>(*model_.elements);
@@ -88,13 +85,8 @@ class LegBuilder {
     constexpr int n = Kernel::kAngles;
     c.stiffness = rod_.EI * C.template topLeftCorner<n, n>().inverse();
     for (int i = 0; i < n; ++i) {
-      double rest = angle_between(drawn[to_size(i)], drawn[to_size(i) + 1]);
-      if (has_natural()) {
-        rest = 0.0;
-        for (Index k = 0; k <= std::min<Index>(leg_.num_cells(), 2); ++k) {
-          rest += step * C(i, k) * natural(joint + step * k);
-        }
-      }
+      const double rest = has_natural() ? turn_in_end_cell(leg_, from_start, C, i, natural())
+                                        : angle_between(drawn[to_size(i)], drawn[to_size(i) + 1]);
       c.rest[i] = Curvature::of(rest).kappa;
     }
     c.actuated = rod_.natural_strain_entries.end_cell(

@@ -12,6 +12,7 @@
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "model/leg_curvature.hpp"
 #include "model/reference_edge.hpp"
 #include "output/actuated_shape.hpp"
 
@@ -48,11 +49,9 @@ class LegReader {
       const Vec2 edge = reference_edge(rod, from_start ? leg.first : leg.last - 1, model);
       end.natural = angle_between({std::cos(direction), std::sin(direction)}, edge);
       if (rod.natural_curvature.empty()) continue;
-      end.natural = 0.0;
-      for (Index k = 0; k <= std::min<Index>(leg.num_cells(), 2); ++k) {
-        const Index place = from_start ? leg.first + k : leg.last - k;
-        end.natural += (from_start ? 1.0 : -1.0) * C(0, k) * rod.natural_curvature[to_size(place)];
-      }
+      end.natural = turn_in_end_cell(leg, from_start, C, 0, [&](Index place) {
+        return rod.natural_curvature[to_size(place)];
+      });
     }
   }
 

@@ -101,10 +101,10 @@ TEST_CASE("units: a metal or a stone that is as soft as a gel has its modulus in
                          {"supports", "[{rod: beam, at: start, clamp: true}]"}}),
             "Is it in MPa?");
   // Gels, silicone, silicone with magnetic powder, lead.
-  for (const auto& [modulus, density] : Materials{
+  for (const auto& material : Materials{
            {"1e3", "1000"}, {"1e5", "1000"}, {"6e4", "1070"}, {"2e5", "3000"}, {"16e9", "11340"}}) {
-    CAPTURE(modulus);
-    CHECK(with_material(modulus, density).empty());
+    CAPTURE(material.first);
+    CHECK(with_material(material.first, material.second).empty());
   }
 }
 

@@ -165,8 +165,9 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   check_actuations(context);
   check_names(context);
   check_time(context);
-  check_resolution(context);
   check_probes(context);
+  if (diagnostics.size() > 0) return;
+  check_resolution(context);
   if (diagnostics.size() > 0) return;
   const ChosenModel model = choose_model(scene);
   check_model(scene, model, diagnostics);

@@ -45,9 +45,9 @@ bool has_torsional_stiffness(const Rod& rod) {
   return rod.material->poissons_ratio || rod.material->shear_modulus;
 }
 
-const DampingTimes& damping_of(const Rod& rod) {
-  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
-  return direct ? direct->damping : rod.material->damping;
+DampingTimes damping_of(const Rod& rod) {
+  if (const auto* direct = std::get_if<Stiffness>(&rod.cross_section)) return direct->damping;
+  return rod.material ? rod.material->damping : DampingTimes{};
 }
 
 bool is_straight(const Rod& rod) {

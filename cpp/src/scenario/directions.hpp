@@ -21,8 +21,8 @@ bool is_isotropic(const CrossSection& section);
 bool is_cable(const Rod& rod);
 /// Whether the scene tells how the rod resists twisting.
 bool has_torsional_stiffness(const Rod& rod);
-/// That of its material, or of its stiffnesses.
-const DampingTimes& damping_of(const Rod& rod);
+/// That of its material, or of its stiffnesses; none where neither could be read.
+DampingTimes damping_of(const Rod& rod);
 /// Whether all nodes lie on a line, but for rounding.
 bool is_straight(const Rod& rod);
 /// Whether all nodes have the same z.

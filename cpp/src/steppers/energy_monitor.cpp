@@ -37,7 +37,8 @@ double strain_energy(const Model& model, double strain) {
 
 /// Faster than comparing numbers. A zero that has changed its sign counts as another number.
 bool same_bits(const Vector& a, const Vector& b) {
-  return std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+  const auto bytes = static_cast<std::size_t>(a.size()) * sizeof(double);
+  return bytes == 0 || std::memcmp(a.data(), b.data(), bytes) == 0;  // no data where empty
 }
 
 /// The two edges that an element of bending lies between.

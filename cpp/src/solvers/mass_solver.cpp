@@ -35,7 +35,9 @@ void MassSolver::prepare(double t) {
 }
 
 void MassSolver::solve(double t, Vector& b) {
-  if (t != prepared_for_) prepare(t);
+  // Steps of one length differ in the last bits.
+  const bool depends_on_t = prepared_for_ < 0.0 || (model_.damping.array() != 0.0).any();
+  if (depends_on_t && t != prepared_for_) prepare(t);
   if (solver_) {
     for (Index i = 0; i < free_.size(); ++i) free_[i] = b[model_.dofs.free()[to_size(i)]];
     solver_->solve(free_);

@@ -247,7 +247,7 @@ def test_a_motion_starts_from_a_saved_equilibrium(tmp_path: Path) -> None:
 def test_verify_refines_legs() -> None:
     found = der.verify(der.Scenario.from_dict(frame(nodes=6)))
     assert found.flagged == []
-    assert found["turn"].space.order == pytest.approx(2.0, abs=0.5)
+    assert found["turn"].space.order == pytest.approx(4.0, abs=0.5)
 
 
 def test_pictures_show_loads_and_clamps_at_joints(tmp_path: Path) -> None:

@@ -274,6 +274,9 @@ class Simulation {
     [[nodiscard]] Vector unbalanced(const Model& model) const;
   };
   [[nodiscard]] Forces forces() const;
+  /// Moves `found` to the equilibrium of legs of order 2, if there is one: edges that know their
+  /// arcs take Newton's method from less far. Does nothing where the legs are of order 2.
+  void approach(const EquilibriumOptions& options, State& found);
   /// Made when it is first asked for; null where there is none. It calls `beat` from now on.
   OutOfPlaneTest* out_of_plane_test(const CancelCallback& beat);
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
@@ -292,6 +295,8 @@ class Simulation {
   LinearSolverChoice solver_;
   std::shared_ptr<const Assembler> assembler_;
   std::unique_ptr<OutOfPlaneTest> out_of_plane_;
+  struct SecondOrder;
+  std::shared_ptr<SecondOrder> second_order_;  // made when it is first asked for
   const StepperInfo& stepper_info_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<StabilityMonitor> stability_;  // of explicit steppers

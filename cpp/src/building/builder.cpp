@@ -327,7 +327,11 @@ void hold_dofs(Model& model) {
 
 }  // namespace
 
-Model build_model(const scenario::Scene& scene) {
+Model build_model(const scenario::Scene& scene, LegOrder order) {
+  // Its discrete gradients do not know the arcs beside joints.
+  if (scene.is_dynamic() && scene.time.integrator == "energy_momentum") {
+    order = LegOrder::Second;
+  }
   Model model;
   model.elements = make_hidden<ElementLists>();
   const bool with_sections = choose_model(scene, model);
@@ -340,7 +344,7 @@ Model build_model(const scenario::Scene& scene) {
   for (RodMesh& rod : model.rods) {
     const ElementCounts before = count_elements(model);
     if (!rod.legs.empty()) {
-      add_leg_elements(rod, model);
+      add_leg_elements(rod, order == LegOrder::Fourth, model);
     } else if (model.dimension == 2) {
       add_rod_elements(rod, model);
     } else {
@@ -368,6 +372,13 @@ Model build_model(const scenario::Scene& scene) {
   for (const RodMesh& rod : model.rods) couple_masses(rod, model);
   model.load_variation = load_variation(scene, model);
   return model;
+}
+
+bool has_arcs(const Model& model) {
+  return std::any_of(model.rods.begin(), model.rods.end(), [](const RodMesh& rod) {
+    return std::any_of(rod.legs.begin(), rod.legs.end(),
+                       [](const Leg& leg) { return !leg.arcs.empty(); });
+  });
 }
 
 }  // namespace der

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "building/arc_elements.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/elements_of.hpp"
@@ -103,7 +104,7 @@ class LegBuilder {
 
 }  // namespace
 
-void add_leg_elements(RodMesh& rod, Model& model) {
+void add_leg_elements(RodMesh& rod, bool with_arcs, Model& model) {
   rod.rest_turning_angle.assign(rod.nodes.size(), 0.0);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     elements_of<Stretch<2>>(*model.elements)
@@ -121,6 +122,7 @@ void add_leg_elements(RodMesh& rod, Model& model) {
   for (Leg& leg : rod.legs) {
     if (rod.curvature == scenario::CurvatureMeasure::Angle) {
       LegBuilder<AngleCurvature>(leg, rod, model).add();
+      if (with_arcs) add_arc_elements(leg, rod, model);
     } else {
       LegBuilder<TangentCurvature>(leg, rod, model).add();
     }

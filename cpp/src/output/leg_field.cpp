@@ -1,15 +1,18 @@
 #include "output/leg_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/energies/arc_stretch.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/end_cell.hpp"
 #include "der/energies/planar_bend.hpp"
+#include "der/energies/registry.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "model/leg_curvature.hpp"
@@ -21,6 +24,53 @@ namespace {
 
 /// Reads a moment [N m].
 using MomentReader = std::function<double(const Model& model, const State& state)>;
+
+/// Reads what the arc of an edge adds to its tension, and to the moments beside it.
+class ArcReader {
+ public:
+  ArcReader(const LegArc& arc, const Model& model) : arc_(arc) {
+    for_each_list(*model.elements, [&](const auto& list) {
+      using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+      enter(Kernel{}, list, model);
+    });
+  }
+
+  /// [N] In an edge of the leg.
+  [[nodiscard]] double tension(Index edge, const Model& model, const State& state) const {
+    return edge == arc_.edge ? loads_(model, state).front() : 0.0;
+  }
+  /// [N m] At a node of the leg.
+  [[nodiscard]] double moment(Index node, const Model& model, const State& state) const {
+    const Index k = arc_.step * (node - arc_.angle);
+    if (k < 0 || k > arc_.edges + arc_.joints - 2) return 0.0;
+    return arc_.step * loads_(model, state)[to_size(1 + k)];
+  }
+
+ private:
+  template <class Kernel, class List>
+  void enter(Kernel /*kernel*/, const List& /*list*/, const Model& /*model*/) {}
+  template <int Edges, int Joints>
+  void enter(ArcStretch<Edges, Joints> /*kernel*/,
+             const ElementList<ArcStretch<Edges, Joints>>& list, const Model& model) {
+    using Kernel = ArcStretch<Edges, Joints>;
+    if (Edges != arc_.edges || Joints != arc_.joints) return;
+    const auto constants = list.constants[to_size(arc_.number)];
+    const auto dofs = list.dofs[to_size(arc_.number)];
+    const ActuatedRest elongation(constants.elongation, 1, model);
+    loads_ = [constants, dofs, elongation](const Model& now, const State& state) {
+      const auto loads =
+          Kernel::loads(constants, elongation.value(0, now, state), gather(dofs, state.positions));
+      Loads all{loads.tension};
+      std::copy_n(loads.moments.data(), Kernel::kAngles, all.begin() + 1);
+      return all;
+    };
+  }
+
+  using Loads = std::array<double, 5>;  // tension, and the moments along the element
+
+  LegArc arc_;
+  std::function<Loads(const Model& model, const State& state)> loads_;
+};
 
 /// Reads quantities off the nodes and edges of one leg.
 class LegReader {
@@ -40,6 +90,7 @@ class LegReader {
     for (Index edge = leg.first; edge < leg.last; ++edge) {
       elongations_.emplace_back(rod.natural_strain_entries.edge(edge), 1, model);
     }
+    for (const LegArc& arc : leg.arcs) arcs_.emplace_back(arc, model);
     for (const bool from_start : {true, false}) {
       const Mat3 C = end_compliance(leg, from_start, rod.edge_length);
       End& end = from_start ? start_ : end_;
@@ -55,9 +106,17 @@ class LegReader {
     }
   }
 
-  /// Moment [N m] at a node of the leg, counted from its start.
+  /// Moment [N m] in the curve of the leg at a node, counted from its start. A node inside a leg
+  /// that knows its arcs is l^2/12 of the curvature beside the curve, and so is the force.
   [[nodiscard]] double moment(Index node, const Model& model, const State& state) const {
-    return moments_[to_size(node)](model, state);
+    const double there = transmitted(node, model, state);
+    if (leg_.arcs.empty() || node == 0 || node == leg_.num_cells()) return there;
+    return there + tension(node, model, state) * beside(node, model, state);
+  }
+  /// How far to the left of a node inside the leg the curve lies [m].
+  [[nodiscard]] double beside(Index node, const Model& model, const State& state) const {
+    const double edges = vector(node - 1, model, state).norm() + vector(node, model, state).norm();
+    return edges * bend(node, model, state) / 24.0;
   }
   /// [1/m] With what actuations add.
   [[nodiscard]] double natural_curvature(Index node, const Model& model, const State& state) const {
@@ -90,7 +149,9 @@ class LegReader {
     const double before = edge + lean_in_middle(node - 1, model, state);
     const double after = edge + turn(node, model, state) + lean_in_middle(node, model, state);
     const double share = length(node) / (length(node - 1) + length(node));
-    return share * before + (1.0 - share) * after;
+    const double between = share * before + (1.0 - share) * after;
+    if (leg_.arcs.empty()) return between;
+    return between - (bend(node + 1, model, state) - bend(node - 1, model, state)) / 24.0;
   }
 
   /// The force [N] that the rod behind a node exerts on the rod before it: linear through the
@@ -121,6 +182,19 @@ class LegReader {
     double natural = 0.0;         ///< without stress [rad]
     Vec3 lengths = Vec3::Zero();  ///< by the curvature at the nodes from the end on [m]
   };
+
+  /// The moment [N m] that the elements transmit at a node.
+  [[nodiscard]] double transmitted(Index node, const Model& model, const State& state) const {
+    double sum = moments_[to_size(node)](model, state);
+    for (const ArcReader& arc : arcs_) sum += arc.moment(node, model, state);
+    return sum;
+  }
+  /// The curvature at a node times the length of a cell, as the bending energy has it [-].
+  [[nodiscard]] double bend(Index node, const Model& model, const State& state) const {
+    return length(std::min(node, leg_.num_cells() - 1)) *
+           (moments_[to_size(node)](model, state) / rod_.EI +
+            natural_curvature(node, model, state));
+  }
 
   template <class Curvature>
   void find_moments(const Model& model) {
@@ -251,20 +325,59 @@ class LegReader {
     const double now = along.norm();
     const double extension =
         now - length(edge) - elongations_[to_size(edge)].value(0, model, state);
-    const double tension = rod_.EA * extension / length(edge);
-    const double shear = (moment(edge, model, state) - moment(edge + 1, model, state)) / now;
+    double tension = rod_.EA * extension / length(edge);
+    for (const ArcReader& arc : arcs_) tension += arc.tension(edge, model, state);
+    const double shear =
+        (transmitted(edge, model, state) - transmitted(edge + 1, model, state)) / now;
     return (tension * along + shear * perpendicular(along)) / now;
   }
 
   Leg leg_;
   RodMesh rod_;
   ActuatedShape actuated_;
-  std::vector<MomentReader> moments_;      // of each node
+  std::vector<MomentReader> moments_;  // of each node, by its bending energy
+  std::vector<ArcReader> arcs_;
   std::vector<ActuatedRest> elongations_;  // [m] of each edge
   std::vector<double> drawn_;              // curvature of each node [1/m]
   std::vector<double> natural_;            // likewise, without stress
   End start_;
   End end_;
+};
+
+/// A coordinate of the curve at the nodes of a rod: nodes inside legs that know their arcs lie
+/// beside it.
+class LegPlaceField : public RodField {
+ public:
+  LegPlaceField(int component, const RodMesh& rod, const Model& model)
+      : RodField(rod.arc_length), component_(component), legs_of_(rod.nodes.size()) {
+    for (const Index node : rod.nodes) dofs_.push_back(model.dof(node, component));
+    smooth_.assign(rod.nodes.size(), true);
+    for (const Leg& leg : rod.legs) {
+      smooth_[to_size(leg.first)] = leg.first == 0;
+      if (leg.arcs.empty()) continue;
+      const auto reader = std::make_shared<const LegReader>(leg, rod, model);
+      for (Index place = leg.first + 1; place < leg.last; ++place) {
+        legs_of_[to_size(place)] = {reader, place - leg.first};
+      }
+    }
+  }
+
+  [[nodiscard]] double sample(std::size_t i, const Model& model,
+                              const State& state) const override {
+    const double at_node = state.positions[dofs_[i]];
+    const auto& [leg, node] = legs_of_[i];
+    if (leg == nullptr) return at_node;
+    const double angle = leg->slope(node, model, state);
+    return at_node +
+           leg->beside(node, model, state) * (component_ == 0 ? -std::sin(angle) : std::cos(angle));
+  }
+  [[nodiscard]] bool smooth_at(std::size_t i) const override { return smooth_[i]; }
+
+ private:
+  int component_;
+  std::vector<Index> dofs_;
+  std::vector<std::pair<std::shared_ptr<const LegReader>, Index>> legs_of_;
+  std::vector<bool> smooth_;
 };
 
 class LegField : public RodField {
@@ -330,6 +443,11 @@ class LegField : public RodField {
 };
 
 }  // namespace
+
+std::unique_ptr<RodField> make_leg_place_field(int component, const RodMesh& rod,
+                                               const Model& model) {
+  return std::make_unique<LegPlaceField>(component, rod, model);
+}
 
 std::unique_ptr<RodField> make_leg_field(LegQuantity quantity, const RodMesh& rod,
                                          const Model& model) {

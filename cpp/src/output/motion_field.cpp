@@ -5,6 +5,7 @@
 
 #include "model/corner.hpp"
 #include "output/dip.hpp"
+#include "output/leg_field.hpp"
 
 namespace der {
 namespace {
@@ -79,6 +80,9 @@ class SpeedField : public NodeField {
 
 std::unique_ptr<RodField> make_component_field(Vector State::* vector, int component,
                                                const RodMesh& rod, const Model& model) {
+  if (vector == &State::positions && !rod.legs.empty()) {
+    return make_leg_place_field(component, rod, model);
+  }
   return std::make_unique<ComponentField>(vector, component, rod, model);
 }
 

@@ -38,6 +38,25 @@ SampleWeights one_sided_weights(const std::vector<double>& arc, double s, scenar
   return linear_weights(arc, s);
 }
 
+/// The polynomial through the samples next to `s`, at most two on either side, that lie on the same
+/// leg: where a leg ends the place stands twice.
+SampleWeights weights_along_leg(const std::vector<double>& arc, SampleWeights linear, double s) {
+  if (linear.size() < 2) return linear;
+  std::size_t first = linear.front().sample;
+  std::size_t last = linear.back().sample;
+  if (first > 0 && arc[first - 1] < arc[first]) --first;
+  if (last + 1 < arc.size() && arc[last + 1] > arc[last]) ++last;
+  SampleWeights result;
+  for (std::size_t i = first; i <= last; ++i) {
+    double weight = 1.0;
+    for (std::size_t j = first; j <= last; ++j) {
+      if (j != i) weight *= (s - arc[j]) / (arc[i] - arc[j]);
+    }
+    result.push_back({i, weight});
+  }
+  return result;
+}
+
 /// A field at one place.
 class PointReader : public ProbeReader {
  public:
@@ -252,8 +271,10 @@ SampleWeights point_weights(const scenario::Probe& probe, QuantityKind kind, con
     return sample_weights(node_weights(rod, s, model), rod);
   }
   if (can_jump(kind)) {
-    return one_sided_weights(field.arc_length(), s, probe.side.value_or(scenario::Side::After),
-                             rod.same_place());
+    SampleWeights weights = one_sided_weights(
+        field.arc_length(), s, probe.side.value_or(scenario::Side::After), rod.same_place());
+    return rod.legs.empty() ? weights
+                            : weights_along_leg(field.arc_length(), std::move(weights), s);
   }
   return linear_weights(field.arc_length(), s);
 }

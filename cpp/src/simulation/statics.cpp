@@ -5,6 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "der/assembly/pattern.hpp"
+#include "der/building/builder.hpp"
 #include "der/core/error.hpp"
 #include "der/energies/circulatory_load.hpp"
 #include "der/loads/external_force.hpp"
@@ -73,6 +75,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& b
   options.newton.step_tolerance *= 0.01;
   options.leave_saddles = leave_saddles;
   options.beat = beat;
+  approach(options, found);
   EquilibriumReport report = find_equilibrium(model_, *assembler_, *solver_.solver, options, found);
   counters_.newton_iterations += report.newton_iterations;
   if (report.failed) {
@@ -88,6 +91,32 @@ EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& b
   state_ = std::as_const(found);  // copied, not moved: views of the vectors stay valid
   start_anew();
   return report;
+}
+
+/// The scene with legs of order 2.
+struct Simulation::SecondOrder {
+  explicit SecondOrder(const scenario::Scene& scene)
+      : model(build_model(scene, LegOrder::Second)),
+        pattern(build_pattern(model)),
+        solver(make_linear_solver(scene.solver.linear, pattern, Elimination::FromStart).solver),
+        assembler(model, solver->layout()) {}
+
+  const Model model;
+  const Pattern pattern;
+  const std::unique_ptr<LinearSolver> solver;
+  const Assembler assembler;
+};
+
+void Simulation::approach(const EquilibriumOptions& options, State& found) {
+  if (!has_arcs(model_)) return;
+  if (!second_order_) second_order_ = std::make_shared<SecondOrder>(scenario_.scene());
+  State near = found;
+  const EquilibriumReport report = find_equilibrium(second_order_->model, second_order_->assembler,
+                                                    *second_order_->solver, options, near);
+  counters_.newton_iterations += report.newton_iterations;
+  if (report.failed) return;
+  for (Ramp& ramp : near.ramps) ramp.from = ramp.to;
+  found = std::move(near);
 }
 
 std::vector<Mode> Simulation::modes(int count, const CancelCallback& beat) {

@@ -6,12 +6,15 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "der/energies/arc_stretch.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
+#include "der/energies/registry.hpp"
 #include "der/energies/section_spring.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretched_edges.hpp"
+#include "der/kinematics/planar_edge.hpp"
 
 namespace der {
 namespace {
@@ -241,6 +244,51 @@ void InitialStress::add_planar_edges(const Model& model, const Configuration& he
         add_edge<2>(effective.dofs, effective.vector(here),
                     Stretch<2>::edge(gather(effective.dofs, displacement)), c.EA, c.rest_length);
       });
+  for_each_list(*model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (IsArcStretch<Kernel>::value) {
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        add_arc<Kernel>(list.dofs[i], list.constants[i], here, displacement);
+      }
+    }
+  });
+}
+
+/// The tension of an edge works on what its arc loses as the angles beside it turn. Those legs are
+/// straight.
+template <class Kernel>
+void InitialStress::add_arc(const std::array<Index, std::size_t{Kernel::kDofs}>& dofs,
+                            const typename Kernel::Constants& c, const Configuration& here,
+                            const Vector& displacement) {
+  constexpr int Edges = Kernel::kNodes - 1;
+  constexpr int Joints = Kernel::kJoints;
+  const auto x = gather(dofs, here.coordinates);
+  const auto u = gather(dofs, displacement);
+  const auto edge_of = [](const typename Kernel::Coordinates& values, int i) -> Vec2 {
+    return values.template segment<2>(2 * i + 2) - values.template segment<2>(2 * i);
+  };
+  const Vec2 edge = edge_of(x, c.edge);
+  const double length = edge.norm();
+  const double tension = c.EA / c.rest_length * edge.dot(edge_of(u, c.edge)) / length;
+  Term& term = terms_.emplace_back();
+  term.size = 2 * Edges + Joints;
+  Eigen::Matrix<double, 2 * Edges + Joints, Kernel::kDirections> turns;
+  turns.setZero();
+  for (int i = 0; i < Edges; ++i) {
+    const Vec2 vector = edge_of(x, i);
+    turns.template block<2, 1>(2 * i, Kernel::kFirstEdge + i) =
+        direction_gradient(vector, 1.0 / vector.squaredNorm());
+    for (int d = 0; d < 2; ++d) {
+      term.variables[to_size(2 * i + d)] = {dofs[to_size(2 * i + 2 + d)], dofs[to_size(2 * i + d)]};
+    }
+  }
+  for (int j = 0; j < Joints; ++j) {
+    turns(2 * Edges + j, j == 0 ? 0 : Kernel::kDirections - 1) = 1.0;
+    term.variables[to_size(2 * Edges + j)] = {dofs[to_size(2 * Kernel::kNodes + j)], -1};
+  }
+  const auto angles =
+      turns.template rightCols<Kernel::kAngles>() - turns.template leftCols<Kernel::kAngles>();
+  term.matrix = -2.0 * tension * length * angles * c.form * angles.transpose();
 }
 
 void InitialStress::add_spatial_edges(const Model& model, const Configuration& here,

@@ -252,6 +252,21 @@ typename EndCell<Curvature, Edges, Joints>::Constants sample_constants(
   return c;
 }
 
+template <int Edges, int Joints>
+typename ArcStretch<Edges, Joints>::Constants sample_constants(const ArcStretch<Edges, Joints>&,
+                                                               Random& random) {
+  typename ArcStretch<Edges, Joints>::Constants c;
+  c.EA = uniform(random, 1.0, 100.0);
+  c.rest_length = uniform(random, 0.5, 2.0);
+  using Form = typename ArcStretch<Edges, Joints>::Form;
+  const Form form = Form::NullaryExpr([&] { return uniform(random, -0.05, 0.05); });
+  c.form = form + form.transpose();
+  c.edge = static_cast<int>(uniform(random, 0.0, Edges - 1e-9));
+  for (double& angle : c.direction) angle = uniform(random, -0.5, 0.5);
+  c.elongation = {kElongation};
+  return c;
+}
+
 inline JointSpring::Constants sample_constants(const JointSpring&, Random& random) {
   return {uniform(random, 0.5, 5.0)};
 }

@@ -36,10 +36,10 @@ TEST_CASE("rods share the node of a joint, and its rotation stands beside it") {
   CHECK(model.dofs.num_rotations() == 2);  // that of the clamp is held
   CHECK(model.num_free() == 2 * 10 + 1);
   // Two nodes and a rotation on one side of a joint, two nodes on the other.
-  CHECK(build_pattern(model).half_bandwidth == 6);
+  CHECK(build_pattern(model).half_bandwidth == 8);  // an arc sees four nodes
 }
 
-TEST_CASE("a rod that is only clamped and free at its ends has the band of a chain") {
+TEST_CASE("a rod that is only clamped and free at its ends has a chain's band and one node more") {
   const auto text = [](const char* joints) {
     return Scenario::parse(
         std::string("rods:\n"
@@ -58,7 +58,7 @@ TEST_CASE("a rod that is only clamped and free at its ends has the band of a cha
       text("joints: [{name: j, kind: hinge, of: [{rod: b, at: end}, {rod: c, at: start}]}]\n")
           .scene());
   CHECK(jointed.num_free() == chain.num_free() - 2);
-  CHECK(build_pattern(jointed).half_bandwidth == build_pattern(chain).half_bandwidth);
+  CHECK(build_pattern(jointed).half_bandwidth == build_pattern(chain).half_bandwidth + 2);
 }
 
 TEST_CASE("the end of a leg is as stiff as a beam whose moment is linear") {
@@ -117,7 +117,7 @@ TEST_CASE("rotations follow from the places of the nodes") {
   rotations.settle(controls, extra, coordinates);
   const double stiffness = 2.0 * 144.0 / 47.0 * (5.0 / 0.37 + 5.0 / 0.63);
   CHECK(coordinates[model.dofs.rotation(1)] - found[model.dofs.rotation(1)] ==
-        doctest::Approx(0.5 / stiffness).epsilon(1e-9));
+        doctest::Approx(0.5 / stiffness).epsilon(1e-5));  // the arcs of bent legs resist, too
 }
 
 TEST_CASE("what a joint tells is what its rods were loaded with") {

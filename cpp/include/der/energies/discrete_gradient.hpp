@@ -4,6 +4,7 @@
 
 #include "der/core/constants.hpp"
 #include "der/core/types.hpp"
+#include "der/energies/arc_stretch.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/local_term.hpp"
@@ -126,6 +127,50 @@ void discrete_gradient(KernelTag<Stretch<Dim>> /*kernel*/,
       c.EA / c.rest_length * (lengths - 2.0 * natural) / lengths * 0.5 * (before + after);
   gradient.template head<Dim>() = -force;
   gradient.template tail<Dim>() = force;
+}
+
+/// By the length of the edge and the turning angles, of which the energy is a polynomial: the mean
+/// of each factor times the change of the others is the change of the product.
+template <int Edges>
+void discrete_gradient(KernelTag<ArcStretch<Edges, 0>> /*kernel*/,
+                       const typename ArcStretch<Edges, 0>::Constants& c, const Configuration& here,
+                       const Local<2 * Edges + 2>& start, const Local<2 * Edges + 2>& end,
+                       Local<2 * Edges + 2>& gradient) {
+  using Angles = typename ArcStretch<Edges, 0>::Angles;
+  const auto edge = [](const Local<2 * Edges + 2>& x, int i) -> Vec2 {
+    return x.template segment<2>(2 * i + 2) - x.template segment<2>(2 * i);
+  };
+  Angles before;
+  Angles after;
+  for (int i = 0; i < Edges - 1; ++i) {
+    before[i] = angle_between(edge(start, i), edge(start, i + 1));
+    after[i] = angle_between(edge(end, i), edge(end, i + 1));
+  }
+  const Angles slope_of_g = c.form * (before + after);
+  const double g0 = before.dot(c.form * before);
+  const double g1 = after.dot(c.form * after);
+  const double s0 = edge(start, c.edge).norm();
+  const double s1 = edge(end, c.edge).norm();
+  const double per_length = c.EA / c.rest_length;
+  const double natural = c.rest_length + c.elongation.value(here.controls);
+  const double length = 0.5 * (s0 + s1);
+  const double extension = 0.5 * (s0 * (1.0 - g0) + s1 * (1.0 - g1)) - natural;
+  const double tension = per_length * (extension * (1.0 - 0.5 * (g0 + g1)) - (length - natural));
+  gradient.setZero();
+  const auto pull = [&](int i, const Vec2& force) {
+    gradient.template segment<2>(2 * i) -= force;
+    gradient.template segment<2>(2 * i + 2) += force;
+  };
+  pull(c.edge, tension / (s0 + s1) * (edge(start, c.edge) + edge(end, c.edge)));
+  for (int i = 0; i < Edges - 1; ++i) {
+    const TurningAngleGradient angle(edge(start, i), edge(start, i + 1), edge(end, i),
+                                     edge(end, i + 1));
+    const double known = after[i] - before[i];
+    double moment = -per_length * extension * length * slope_of_g[i];
+    if (std::abs(known - angle.change) >= kPi) moment *= known / angle.change;
+    pull(i, moment * angle.by_a);
+    pull(i + 1, moment * angle.by_b);
+  }
 }
 
 template <class Curvature>

@@ -3,6 +3,7 @@
 #include <tuple>
 #include <vector>
 
+#include "der/energies/arc_stretch.hpp"
 #include "der/energies/circulatory_load.hpp"
 #include "der/energies/corner_fork.hpp"
 #include "der/energies/element_list.hpp"
@@ -40,7 +41,9 @@ struct ElementLists {
       ElementList<EndCell<AngleCurvature, 2, 1>>, ElementList<EndCell<TangentCurvature, 2, 1>>,
       ElementList<EndCell<AngleCurvature, 1, 2>>, ElementList<EndCell<TangentCurvature, 1, 2>>,
       ElementList<EndCell<AngleCurvature, 2, 2>>, ElementList<EndCell<TangentCurvature, 2, 2>>,
-      ElementList<JointSpring>,
+      ElementList<ArcStretch<1, 1>>, ElementList<ArcStretch<1, 2>>, ElementList<ArcStretch<2, 0>>,
+      ElementList<ArcStretch<2, 1>>, ElementList<ArcStretch<2, 2>>, ElementList<ArcStretch<3, 0>>,
+      ElementList<ArcStretch<3, 1>>, ElementList<ArcStretch<3, 2>>, ElementList<JointSpring>,
       ElementList<Stretch<3>>,                                          //
       ElementList<FromSpatialPivot<Stretch<3>>>,                        //
       ElementList<IsotropicBend<AngleCurvature>>,                       //

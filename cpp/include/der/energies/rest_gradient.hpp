@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/core/types.hpp"
+#include "der/energies/arc_stretch.hpp"
 #include "der/energies/end_cell.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_bend.hpp"
@@ -40,6 +41,22 @@ struct RestGradient<Stretch<Dim>> {
                                             const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
     const double length = Kernel::edge(x).norm();
     return Eigen::Matrix<double, kSize, 1>(-Kernel::response(c, here.controls, length).tension);
+  }
+};
+
+template <int Edges, int Joints>
+struct RestGradient<ArcStretch<Edges, Joints>> {
+  using Kernel = ArcStretch<Edges, Joints>;
+  static constexpr bool kExists = true;
+  static constexpr int kSize = 1;
+  static const NaturalStrainOffset& shift(const typename Kernel::Constants& c) {
+    return c.elongation;
+  }
+  static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
+                                            const Configuration& here,
+                                            const typename Kernel::Coordinates& x) {
+    return Eigen::Matrix<double, kSize, 1>(
+        Kernel::by_elongation(c, c.elongation.value(here.controls), x));
   }
 };
 

@@ -14,6 +14,16 @@ struct LegEnd {
   double direction = 0.0;  ///< of the leg's tangent where the joint has not turned [rad]
 };
 
+/// An edge of a leg whose arc is longer or shorter than it (energies/arc_stretch.hpp).
+struct LegArc {
+  int edges = 0;  ///< of its element
+  int joints = 0;
+  Index number = 0;  ///< of its element in its list
+  Index edge = 0;    ///< counted from the start of the leg
+  Index angle = 0;   ///< the node of the element's first turning angle, likewise
+  int step = 1;      ///< -1 where the element runs from the end of the leg
+};
+
 /// A smooth piece of a rod in a plane. Joints are nodes with rotations of their own; all that acts
 /// at a point acts on a joint, and legs between joints are plain chains with an end cell at each
 /// end (energies/end_cell.hpp).
@@ -26,6 +36,7 @@ struct Leg {
   Index start_cell = -1;  ///< the end cell at its start; where one has both ends, it is this
   Index end_cell = -1;
   Index first_bend = -1;  ///< the bends at nodes between end cells follow one another
+  std::vector<LegArc> arcs;
   [[nodiscard]] Index num_cells() const { return last - first; }
   /// Whether the end cell of a joint has the bending at a node: it is next to the joint.
   [[nodiscard]] bool in_end_cell(Index place) const {

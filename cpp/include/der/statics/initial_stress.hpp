@@ -14,7 +14,8 @@ namespace der {
 /// they make by turning with the structure: the initial-stress stiffness of the classical theory.
 /// Material stiffness is that of the shape at the start, and so are all directions.
 ///
-/// A tension T makes T/l across an edge of length l. In space a moment M between two section frames
+/// A tension T makes T/l across an edge of length l, and -2 T l G in the turning angles of its arc
+/// (energies/arc_stretch.hpp). In space a moment M between two section frames
 /// that turn by omega_a and omega_b makes the quadratic form
 ///   omega_b . (omega_a x M),
 /// and what remains of it where an edge is turned by a force: M across the tangent t couples the
@@ -72,6 +73,10 @@ class InitialStress {
   void add_edge(const std::array<Index, std::size_t{2} * Dim>& dofs,
                 const Eigen::Matrix<double, Dim, 1>& edge,
                 const Eigen::Matrix<double, Dim, 1>& change, double EA, double rest_length);
+  template <class Kernel>
+  void add_arc(const std::array<Index, std::size_t{Kernel::kDofs}>& dofs,
+               const typename Kernel::Constants& c, const Configuration& here,
+               const Vector& displacement);
   void add_planar_edges(const Model& model, const Configuration& here, const Vector& displacement);
   void add_spatial_edges(const Model& model, const Configuration& here, const Vector& displacement);
   /// `moment` [N m] of its element, `size` of the model [m], number of variables.

@@ -39,12 +39,19 @@ Vector present_controls(const Model& model, Vector controls, const Vector& follo
   return controls;
 }
 
+/// Whether all nodes that are free lie where they are drawn; the rotations of joints follow them.
+bool is_as_drawn(const Model& model, const Vector& positions) {
+  const std::vector<Index>& free = model.dofs.free();
+  return std::all_of(free.begin(), free.end(), [&](Index dof) {
+    return dof >= model.dofs.rotation(0) || positions[dof] == model.initial_positions[dof];
+  });
+}
+
 }  // namespace
 
 std::vector<double> move_supports(const Model& model, const StaticLoads& loads, const Vector& start,
                                   const Equilibrate& equilibrate, Shape& shape) {
-  const bool as_drawn =
-      shape.positions(model.dofs.free()) == model.initial_positions(model.dofs.free());
+  const bool as_drawn = is_as_drawn(model, shape.positions);
   if (as_drawn) shape = {model.initial_positions, unwrapped_of_reference(model)};
   const StaticLoads before{as_drawn ? reference_controls(model, loads.controls) : start, {}};
   before.follow(model, shape);

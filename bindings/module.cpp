@@ -17,4 +17,5 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_batch(module);
   bindings::bind_steppers(module);
   bindings::bind_loops(module);
+  bindings::bind_unanswered_signals(module);
 }

@@ -2,6 +2,6 @@
 
 import sys
 
-from der.cli import main
+from der_command import main
 
 sys.exit(main())

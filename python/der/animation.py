@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der.film import Film, make_film, round_speed, speed_text, title_of
+from der.output_paths import written_whole
 from der.progress import ProgressFunction
 from der.scene_loads import ActingLoads
 
@@ -111,17 +112,13 @@ def animate(
     with style():
         stage = _set_stage(picture, cut)
     pictures = _draw(stage, picture, cut, range(len(cut.texts)), progress)
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
-    try:
+    with written_whole(path) as partial:
         if gif:
             few = np.linspace(0, len(cut.texts) - 1, _GIF_SAMPLES).astype(np.int64)
             palette = _gif_palette(_draw(stage, picture, cut, few.tolist()))
             _write_gif(pictures, partial, cut.fps, palette)
         else:
             _write_mp4(pictures, partial, cut.fps)
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
     return path
 
 

@@ -13,15 +13,22 @@ from collections.abc import Sequence
 
 from der import __version__, commands
 from der.errors import DerError, DivergedError, NotConvergedError
-from der.interrupts import end_with_interrupts, take_one_interrupt
+from der.interrupts import (
+    end_with_signals,
+    exit_code,
+    take_one_interrupt,
+    take_one_termination,
+    told,
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand and return its exit code, as der_run has them; without one, print the help.
 
     0, or with a message on stderr 3 if a run failed and 1 for anything else; a command may have
-    others of its own. 2 for a command line that cannot be read, 130 after Ctrl-C. Without a message
-    141 if nobody reads what it prints any more, as the shell calls the end of a program by SIGPIPE.
+    others of its own. 2 for a command line that cannot be read, 130 after Ctrl-C, 143 after
+    SIGTERM. Without a message 141 if nobody reads what it prints any more, as the shell calls the
+    end of a program by SIGPIPE.
 
     Parameters
     ----------
@@ -29,12 +36,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         In place of those of the process.
     """
     warnings.showwarning = _print_warning
-    takes_one_interrupt = take_one_interrupt()
+    taken = [take_one_interrupt(), take_one_termination()]
     try:
         return _execute(arguments)
     finally:
-        if takes_one_interrupt:
-            end_with_interrupts()
+        if any(taken):
+            end_with_signals()
 
 
 def _execute(arguments: Sequence[str] | None) -> int:
@@ -61,9 +68,9 @@ def _execute(arguments: Sequence[str] | None) -> int:
     except MemoryError as error:
         print(f"error: the memory does not suffice: {error}", file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return 130
+    except KeyboardInterrupt as interrupt:
+        print(told(interrupt), file=sys.stderr)
+        return exit_code(interrupt)
 
 
 def _told(error: Exception) -> str:

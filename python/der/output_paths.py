@@ -4,12 +4,53 @@ from __future__ import annotations
 
 import os
 from argparse import ArgumentTypeError
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 #: Endings of the pictures that can be written.
 PICTURE_ENDINGS = (".png", ".svg", ".pdf")
 
 _ELSEWHERE = "name a folder where you may write, or change its permissions"
+
+
+@contextmanager
+def written_whole(path: Path) -> Iterator[Path]:
+    """Give the path to write a file to, which gets its name `path` at the end of a ``with`` block.
+
+    What an error or a signal leaves half-written never has the name of a result. Devices, and files
+    of a folder that takes no others, are written in place.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Yields
+    ------
+    pathlib.Path
+        A file beside it with the same ending.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    target = path.resolve()
+    if target.exists() and not (target.is_file() and os.access(target.parent, os.W_OK)):
+        yield path
+        return
+    partial = target.with_name(f".{target.stem}.partial{target.suffix}")
+    try:
+        yield partial
+        partial.replace(target)
+    except OSError as error:
+        if error.filename == str(partial):
+            error.filename = str(path)
+        raise
+    finally:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
 
 
 def output_file(text: str) -> Path:

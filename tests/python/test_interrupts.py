@@ -1,6 +1,10 @@
-"""Ctrl-C in long calls: it is answered at once, and leaves simulations as they were."""
+"""Ctrl-C in long calls: it is answered at once, and leaves simulations as they were.
+
+The command `der` answers SIGTERM likewise."""
 
 import os
+import pty
+import re
 import signal
 import subprocess
 import sys
@@ -157,8 +161,17 @@ def has_rows(folder):
         return False
 
 
-def test_ctrl_c_ends_a_sweep_of_searches_in_processes(tmp_path):
-    """As from a terminal, which sends it to all processes."""
+#: Signals that end the command, its exit codes, and what it says.
+ENDS = pytest.mark.parametrize(
+    ("number", "code", "word"),
+    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")],
+    ids=["SIGINT", "SIGTERM"],
+)
+
+
+@ENDS
+def test_a_signal_ends_a_sweep_of_searches_in_processes(tmp_path, number, code, word):
+    """As from a terminal or a batch system, which send it to all processes."""
     scene = der.Scenario.from_dict(rod(4001, -1, {"modes": {"count": 1}}))
     (tmp_path / "rod.yaml").write_text(scene.to_yaml())
     vary = "analysis.modes.count=1,600,601"
@@ -176,17 +189,136 @@ def test_ctrl_c_ends_a_sweep_of_searches_in_processes(tmp_path):
         assert time.monotonic() < deadline
         time.sleep(0.1)
     begun = time.monotonic()
-    os.killpg(sweep.pid, signal.SIGINT)
+    os.killpg(sweep.pid, number)
+    # The pipe is at its end once the workers have ended, too.
     errors = sweep.communicate(timeout=60)[1]
     assert time.monotonic() - begun < PATIENCE + 2.0
-    assert sweep.returncode == 130
-    assert errors.startswith("interrupted: ")
+    assert sweep.returncode == code
+    assert errors.startswith(word)
     assert "Traceback" not in errors
+    assert len(der.load_sweep(tmp_path / "s")) == 1
 
 
+def motion(duration, every):
+    scene = rod(41, -1) | {
+        "time": {"duration": duration, "step": 0.01},
+        "output": {"every": every, "probes": {"y": {"quantity": "y", "rod": "rod", "at": "end"}}},
+    }
+    del scene["analysis"]
+    return scene
+
+
+def run_until(text, line, folder):
+    """Start a command with a terminal for its messages, and return it when `text` stands there."""
+    terminal, end = pty.openpty()
+    command = subprocess.Popen(
+        [sys.executable, *line], cwd=folder, stdout=subprocess.PIPE, stderr=end, text=True
+    )
+    os.close(end)
+    seen = ""
+    while text not in seen:
+        seen += os.read(terminal, 1000).decode()
+    return command, terminal
+
+
+def rest_of(terminal):
+    """Return what comes until the other end is closed."""
+    text = ""
+    try:
+        while piece := os.read(terminal, 1000):
+            text += piece.decode()
+    except OSError:  # as Linux says that it is closed
+        pass
+    os.close(terminal)
+    return text
+
+
+def assert_ended(command, terminal, number, code, word):
+    begun = time.monotonic()
+    command.send_signal(number)
+    printed, said = command.communicate(timeout=60)[0], rest_of(terminal)
+    assert time.monotonic() - begun < PATIENCE + 2.0  # on a machine that is busy with other tests
+    assert (command.returncode, printed) == (code, "")
+    assert re.fullmatch(f"{word}(: .* kept in found; .*)?", said.strip().splitlines()[-1].strip())
+
+
+@ENDS
+@pytest.mark.parametrize("name", ["verify", "study", "animate", "export", "sweep"])
+def test_a_signal_ends_a_command(tmp_path, name, number, code, word):
+    """SIGTERM ended them by itself, without a word."""
+    scene, run = tmp_path / "rod.yaml", tmp_path / "run"
+    if name in ("animate", "export"):
+        der.run(motion(100, 0.01), out=run)
+    else:
+        scene.write_text(der.Scenario.from_dict(motion(10_000, 1)).to_yaml())
+    results = {
+        "verify": ([scene, "--json", "found.json"], ["found.json"]),
+        "study": ([scene, "--max-seconds", "60", "--out", "found"], ["found"]),
+        "animate": ([run, "--fps", "60", "--speed", "1"], ["run/animation.gif"]),
+        "export": ([run, "--format", "csv"], ["run/csv/nodes.csv", "run/csv/probes.csv"]),
+        "sweep": ([scene, "--vary", "time.step=0.01,0.02", "--out", "found"], []),
+    }
+    arguments, names = results[name]
+    line = ["-m", "der", name, *map(str, arguments)]
+    command, terminal = run_until("%", line, tmp_path)
+    assert_ended(command, terminal, number, code, word)
+    assert not [name for name in names if (tmp_path / name).exists()]
+    assert not list(tmp_path.rglob("*partial*"))
+
+
+@ENDS
+@pytest.mark.parametrize("blocked", [False, True])
+def test_a_signal_leaves_no_half_written_picture(tmp_path, number, code, word, blocked):
+    """Also where the interpreter does not get to answer it."""
+    run = tmp_path / "run"
+    der.run(motion(1, 0.1), out=run)
+    program = f"""
+import sys, time
+from pathlib import Path
+from matplotlib.figure import Figure
+
+def write_half(figure, path):
+    Path(path).write_bytes(b"half")
+    print("half written", file=sys.stderr, flush=True)
+    {"sum(range(10**15))" if blocked else "time.sleep(60)"}
+
+Figure.savefig = write_half
+sys.argv = ["der", "plot", "run"]
+import der_command
+sys.exit(der_command.main())
+"""
+    command, terminal = run_until("half written", ["-c", program], tmp_path)
+    time.sleep(0.3)  # until it is in the next line
+    assert_ended(command, terminal, number, code, word)
+    assert not (run / "plot.png").exists()
+    assert list(run.glob(".plot.partial.png")) == [run / ".plot.partial.png"] * blocked
+
+
+def test_other_programs_keep_their_own_answer_to_sigterm(tmp_path):
+    program = """
+import signal, sys, time, der, der.cli
+der.run(sys.argv[1])
+der.sweep(sys.argv[1], {"time.step": [0.01]}, out="s")
+der.verify(sys.argv[1])
+assert der.cli.main(["check", sys.argv[1]]) == 0
+assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+print("ready", file=sys.stderr, flush=True)
+der.run(der.load(sys.argv[1], **{"time.duration": 1e6}))
+"""
+    scene = tmp_path / "rod.yaml"
+    scene.write_text(der.Scenario.from_dict(motion(1, 0.1)).to_yaml())
+    command, terminal = run_until("ready", ["-c", program, str(scene)], tmp_path)
+    command.send_signal(signal.SIGTERM)
+    command.communicate(timeout=60)
+    rest_of(terminal)
+    assert command.returncode == -signal.SIGTERM
+
+
+@ENDS
 @pytest.mark.parametrize("delay", [0.02, 0.05, 0.1])
-def test_ctrl_c_while_the_command_loads_its_modules(delay):
-    """It printed a traceback."""
+def test_a_signal_while_the_command_loads_its_modules(delay, number, code, word):
+    """Ctrl-C printed a traceback."""
     program = "import sys, der_command; print(flush=True); sys.exit(der_command.main())"
     command = subprocess.Popen(
         [sys.executable, "-c", program, "check"],
@@ -196,10 +328,10 @@ def test_ctrl_c_while_the_command_loads_its_modules(delay):
     )
     command.stdout.readline()
     time.sleep(delay)
-    command.send_signal(signal.SIGINT)
+    command.send_signal(number)
     errors = command.communicate(timeout=60)[1]
     # Where it has loaded them, it misses the names of scenes.
-    assert command.returncode == 2 or (command.returncode, errors) == (130, "interrupted\n")
+    assert command.returncode == 2 or (command.returncode, errors) == (code, f"{word}\n")
 
 
 def test_the_command_begins_where_ctrl_c_is_answered():

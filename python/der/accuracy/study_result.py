@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from der._core import Scenario
 from der.accuracy.study_arguments import check_errors
 from der.accuracy.study_row import StudyRow, seconds_text
+from der.output_paths import written_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -130,7 +131,10 @@ class Study:
         Numbers that are not known are empty.
         """
         names = [field.name for field in fields(StudyRow)]
-        with Path(path).open("w", newline="", encoding="utf-8") as file:
+        with (
+            written_whole(Path(path)) as partial,
+            partial.open("w", newline="", encoding="utf-8") as file,
+        ):
             writer = csv.writer(file)
             writer.writerow(names)
             for row in self.rows:

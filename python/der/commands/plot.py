@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from der import load_sweep, open_run
-from der.output_paths import PICTURE_ENDINGS
+from der.output_paths import PICTURE_ENDINGS, written_whole
 from der.sweeps.store import is_sweep
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError(f"cannot write {out.name}: a picture ends with .png, .svg or .pdf")
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
     figure = _plot_sweep(arguments) if is_sweep(arguments.run) else _plot_run(arguments)
-    figure.savefig(out)
+    with written_whole(out) as partial:
+        figure.savefig(partial)
     print(out)
     return 0
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from der.output_paths import check_output_folder, make_folder, output_folder
+from der.output_paths import check_output_folder, make_folder, output_folder, written_whole
 from der.progress import progress_on_terminal
 from der.spelled_numbers import whole_number_argument
 
@@ -89,7 +89,8 @@ def execute(arguments: argparse.Namespace) -> int:
         )
     make_folder(out)
     found.write_csv(out / "study.csv")
-    found.plot().savefig(out / "study.png")
+    with written_whole(out / "study.png") as partial:
+        found.plot().savefig(partial)
     for note in found.notes:
         print(f"Note: {note}.")
     for line in found.advice(arguments.errors):

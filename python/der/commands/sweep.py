@@ -4,7 +4,7 @@ Writes FOLDER/sweep.sqlite, to which members are added while they finish; a memb
 row as well. VALUES are spelled 1,2,5 or as a range with its number of values, 0:1:11, in equal
 ratios 1e6:1e9:7:log; with --sample, as 0:1 or 1e6:1e9:log. Exit codes: 0, 1 for a mistake in the
 scene or the values of arguments, 2 for a command line that cannot be read, 3 if every member
-failed, 130 after Ctrl-C: what is finished is kept, and --resume goes on.
+failed, 130 after Ctrl-C, 143 after SIGTERM: what is finished is kept, and --resume goes on.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from der.interrupts import exit_code, told
 from der.output_paths import output_folder
 from der.progress import progress_on_terminal
 from der.spelled_numbers import whole_number_argument
@@ -23,7 +24,7 @@ from der.spelled_numbers import whole_number_argument
 if TYPE_CHECKING:
     from der.sweeps.executors import AnyExecutor
 
-_ALL_FAILED, _INTERRUPTED = 3, 130
+_ALL_FAILED = 3
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -119,9 +120,9 @@ def execute(arguments: argparse.Namespace) -> int:
                 executor=executor,
                 progress=progress,
             )
-    except KeyboardInterrupt:
-        print(_interrupted(arguments.out), file=sys.stderr)
-        return _INTERRUPTED
+    except KeyboardInterrupt as interrupt:
+        print(f"{told(interrupt)}: {_kept(arguments.out)}", file=sys.stderr)
+        return exit_code(interrupt)
     print(f"{found.scenario.title}: {found.summary()}")
     print(arguments.out / FILE)
     return _ALL_FAILED if found.all_failed else 0
@@ -134,7 +135,7 @@ def _varied(text: str) -> tuple[str, str]:
     return path, values
 
 
-def _interrupted(out: Path) -> str:
+def _kept(out: Path) -> str:
     """Return what a sweep that was interrupted leaves."""
     from der.sweeps import load_sweep
 
@@ -143,7 +144,7 @@ def _interrupted(out: Path) -> str:
     except (OSError, ValueError):
         kept = 0  # it never began
     what = "no member is" if kept == 0 else "1 member is" if kept == 1 else f"{kept} members are"
-    return f"interrupted: {what} kept in {out}; the same command with --resume goes on from there"
+    return f"{what} kept in {out}; the same command with --resume goes on from there"
 
 
 @contextmanager

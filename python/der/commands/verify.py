@@ -12,7 +12,7 @@ import argparse
 import json
 
 from der.accuracy import verify
-from der.output_paths import output_file
+from der.output_paths import output_file, written_whole
 from der.progress import progress_on_terminal
 from der.spelled_numbers import whole_number_argument
 
@@ -52,5 +52,6 @@ def execute(arguments: argparse.Namespace) -> int:
     print(verification)
     if arguments.json is not None:
         text = json.dumps(verification.to_dict(), indent=2, ensure_ascii=False)
-        arguments.json.write_text(text + "\n", encoding="utf-8")
+        with written_whole(arguments.json) as partial:
+            partial.write_text(text + "\n", encoding="utf-8")
     return _FLAGGED if verification.flagged else 0

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 from der._core import array_units
 from der.fields import fields_of, rod_fields
 from der.film import mode_shapes
+from der.output_paths import written_whole
 from der.progress import ProgressFunction
 from der.run_data import RunData
 
@@ -23,16 +26,25 @@ def write_csv(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
     """Write ``nodes.csv`` and ``probes.csv`` into a folder; see `der.export`."""
     out.mkdir(parents=True, exist_ok=True)
     nodes, probes = out / "nodes.csv", out / "probes.csv"
-    with nodes.open("w", newline="", encoding="utf-8") as file:
+    with _table(nodes) as file:
         _write_nodes(result, file, progress)
-    with probes.open("w", newline="", encoding="utf-8") as file:
+    with _table(probes) as file:
         _write_probes(result, file)
     if not len(mode_shapes(result)):
         return [nodes, probes]
     modes = out / "modes.csv"
-    with modes.open("w", newline="", encoding="utf-8") as file:
+    with _table(modes) as file:
         _write_modes(result, file)
     return [nodes, probes, modes]
+
+
+@contextmanager
+def _table(path: Path) -> Iterator[TextIO]:
+    with (
+        written_whole(path) as partial,
+        partial.open("w", newline="", encoding="utf-8") as file,
+    ):
+        yield file
 
 
 def _write_nodes(result: RunData, file: TextIO, progress: ProgressFunction) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from der._core import array_units
 from der.fields import along_line, fields_of, rod_fields
+from der.output_paths import written_whole
 from der.progress import ProgressFunction
 from der.run_data import RunData
 
@@ -54,7 +55,7 @@ def write_npz(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
         }
         arrays |= {f"rods/{fields.rod.name}/{name}": values for name, values in rod.items()}
     arrays |= {f"units/{name}": np.array(unit) for name, unit in _units(result).items()}
-    with out.open("wb") as file:
+    with written_whole(out) as partial, partial.open("wb") as file:
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
     progress(1.0)
     return [out]

@@ -10,6 +10,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
+from der.output_paths import written_whole
 from der.sweeps.sweep_data import SweepData
 
 SweepFormat = Literal["csv", "npz", "parquet"]
@@ -54,7 +55,8 @@ def export_sweep(sweep: SweepData, format: SweepFormat, out: str | os.PathLike[s
     if path.suffix != f".{format}":
         path = path.with_name(f"{path.name}.{format}")
     path.parent.mkdir(parents=True, exist_ok=True)
-    writers[format](sweep, path)
+    with written_whole(path) as partial:
+        writers[format](sweep, partial)
     return [path]
 
 

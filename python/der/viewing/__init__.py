@@ -9,6 +9,7 @@ import tempfile
 import webbrowser
 from pathlib import Path
 
+from der.output_paths import written_whole
 from der.run_data import RunData
 
 _FOLDER = Path(__file__).parent
@@ -64,7 +65,8 @@ def view(
     for name, part in parts.items():
         page = page.replace("{{" + name + "}}", part, 1)
     file = Path(tempfile.mkdtemp(prefix="der-"), "view.html") if path is None else Path(path)
-    file.write_text(page, encoding="utf-8")
+    with written_whole(file) as partial:
+        partial.write_text(page, encoding="utf-8")
     if open or (open is None and path is None and _has_screen()):
         webbrowser.open(file.resolve().as_uri())
     return file

@@ -53,6 +53,27 @@ def test_ring_of_michell(spatial_reference, ratio):
     assert unstable_directions(michell(200, ratio, 1.001 * exact)) == 2
 
 
+@pytest.mark.parametrize("size", [1e-3, 1.0, 30.0])
+@pytest.mark.parametrize("count", [16, 60, 160])
+@pytest.mark.parametrize("turns", [1.9, 2.3, 3.3, 4.4, 5.4, 12.0])
+def test_twisted_rings_are_kept_however_unstable(turns, count, size):
+    """A circle that is twisted evenly is in balance, however far. For EI = GJ a pair of modes of n
+    waves is unstable from sqrt(n^2 - 1) turns on (Zajac, J. Appl. Mech. 29, 1962). Six rigid
+    motions and the spin of its sections are neutral, as far as rounding lets see."""
+    stiff = section(EA=1e5 / size**2, EI=1.0, GJ=1.0, rotary_inertia=1e-3)
+    points = size * circle(count)
+    rod = {**STRAIGHT, "initial_twist": 2 * np.pi * turns / length_of(points)}
+    simulation = der.Simulation(der.Scenario.from_dict(ring_through(points, stiff, rod)))
+    report = simulation.equilibrium(leave_saddles=False)
+    assert simulation.positions == pytest.approx(points, abs=1e-9 * size)
+    assert report.stability == "unstable"
+    assert report.neutral_directions + report.unknown_directions == 7
+    assert report.unknown_directions <= 1
+    if count == 160 and turns < 6:
+        waves = sum(n**2 - 1 < turns**2 for n in range(2, 10))
+        assert report.unstable_directions == 2 * waves
+
+
 @pytest.mark.parametrize("measure", ["angle", "tangent"])
 def test_order_of_the_critical_twist(spatial_reference, fitted_order, measure):
     """The twist at which the pair appears, by bisection."""

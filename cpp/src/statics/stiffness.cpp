@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "der/core/index.hpp"
 #include "der/model/dimension.hpp"
@@ -18,6 +20,8 @@ namespace {
 /// Rounding errors of the largest entry that assembling and factorising leave in an eigenvalue.
 constexpr double kRoundings = 8.0;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Eigenvalues of more than so many rounding errors are clear of them.
+constexpr double kClear = 1e3;
 /// Doubtful directions are examined one by one only up to this number.
 constexpr Index kMostDoubtful = 40;
 /// If rounding hides the sign of a curvature, the direction is neutral where the error of the
@@ -112,7 +116,6 @@ Stability Stiffness::stability() {
 }
 
 bool Stiffness::is_clear() {
-  constexpr double kClear = 1e3;
   const double near = kClear * rounding();
   return factorize(near).negative_pivots == factorize(-near).negative_pivots;
 }
@@ -145,15 +148,17 @@ Stability Stiffness::stability_by_pivots() {
 }
 
 void Stiffness::judge_doubtful(Stability& stability) {
-  const Index count = stability.unstable_directions + stability.doubtful_directions;
+  const Index clear =
+      stability.unstable_directions == 0 ? 0 : factorize(kClear * rounding()).negative_pivots;
+  const Index count = stability.unstable_directions + stability.doubtful_directions - clear;
   if (count > kMostDoubtful) {
     stability.unknown_directions = stability.doubtful_directions;
     return;
   }
-  const SoftSpace space = softest_space(count);
+  const SoftSpace space = softest_space(count, clear);
   // A direction is neutral if it is flat compared with the stiffest of this space.
-  const double flat = kFlat * space.curvatures[space.curvatures.size() - 1];
-  stability.unstable_directions = 0;
+  const double flat = kFlat * std::abs(space.curvatures[space.curvatures.size() - 1]);
+  stability.unstable_directions = clear;
   for (Index i = 0; i < count; ++i) {
     const double curvature = space.curvatures[i];
     if (curvature < -space.rounding[i]) {  // along any direction, this proves it
@@ -164,12 +169,10 @@ void Stiffness::judge_doubtful(Stability& stability) {
   }
 }
 
-/// Factorises K plus the smallest shift that makes it positive definite, to about a third, and
-/// returns the shift; at least the rounding error.
-double Stiffness::factorize_positive() {
+double Stiffness::factorize_positive(Index but) {
   const auto positive = [&](double shift) {
     const Inertia inertia = factorize(shift);
-    return inertia.factorised && inertia.negative_pivots == 0;
+    return inertia.factorised && inertia.negative_pivots <= but;
   };
   double high = rounding();
   double low = 0.0;
@@ -225,13 +228,13 @@ SoftDirection Stiffness::soft_direction(Vector free) const {
 /// block): every step minimises the second variation over the present directions and the
 /// preconditioned residuals. Second variations and residuals are summed element by element, which
 /// keeps their digits.
-Stiffness::SoftSpace Stiffness::softest_space(Index count) {
+Stiffness::SoftSpace Stiffness::softest_space(Index count, Index below) {
   constexpr int kIterations = 30;
   constexpr double kSettled = 1e-3;
   constexpr Index kSpare = 2;
   const Index size = model_.num_free();
   const Index wanted = std::min(count + kSpare, size);
-  factorize_positive();
+  factorize_positive(below);
   Vector column = unstructured_vector(size * wanted);
   Eigen::MatrixXd basis = Eigen::Map<Eigen::MatrixXd>(column.data(), size, wanted);
   for (Index i = 0; i < wanted; ++i) {
@@ -239,7 +242,7 @@ Stiffness::SoftSpace Stiffness::softest_space(Index count) {
     solve(column);
     basis.col(i) = column.normalized();
   }
-  SoftSpace space = rayleigh_ritz(basis, wanted);
+  SoftSpace space = rayleigh_ritz(basis, wanted, below > 0);
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     Eigen::MatrixXd answers(size, wanted);
     bool settled = true;
@@ -250,21 +253,23 @@ Stiffness::SoftSpace Stiffness::softest_space(Index count) {
           space.curvatures[i] * x;
       column = force;
       solve(column);
-      space.errors[i] = kErrorShare * std::abs(force.dot(column));
+      // Far below zero are terms of the other sign, which may hide as much in the energy.
+      const double hidden = below == 0 ? 0.0 : 2.0 * force.squaredNorm() / (kClear * rounding());
+      space.errors[i] = kErrorShare * (std::abs(force.dot(column)) + hidden);
       answers.col(i) = column.normalized();
       const double small = std::max(kSettled * std::abs(space.curvatures[i]), space.rounding[i]);
       settled = settled && (i >= count || space.errors[i] <= small);
     }
-    if (settled || wanted == size) break;
+    if (settled || wanted == size || iteration + 1 == kIterations) break;
     basis.resize(size, std::min(2 * wanted, size));
     basis << space.directions, answers.leftCols(basis.cols() - wanted);
-    space = rayleigh_ritz(basis, wanted);
+    space = rayleigh_ritz(basis, wanted, below > 0);
   }
   return space;
 }
 
-/// The softest directions in the span of `basis`.
-Stiffness::SoftSpace Stiffness::rayleigh_ritz(const Eigen::MatrixXd& basis, Index count) const {
+Stiffness::SoftSpace Stiffness::rayleigh_ritz(const Eigen::MatrixXd& basis, Index count,
+                                              bool nearest) const {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
   const Eigen::MatrixXd directions =
       qr.householderQ() * Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
@@ -276,8 +281,16 @@ Stiffness::SoftSpace Stiffness::rayleigh_ritz(const Eigen::MatrixXd& basis, Inde
     return second_variations(model_, here_, full);
   };
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(variations(directions).values);
+  std::vector<Index> order(to_size(basis.cols()));
+  std::iota(order.begin(), order.end(), Index{0});
+  if (nearest) {
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return std::abs(solver.eigenvalues()[a]) < std::abs(solver.eigenvalues()[b]);
+    });
+  }
+  order.resize(to_size(count));
   SoftSpace space;
-  space.directions = directions * solver.eigenvectors().leftCols(count);
+  space.directions = directions * solver.eigenvectors()(Eigen::all, order);
   const SecondVariations final = variations(space.directions);
   space.curvatures = final.values.diagonal();
   space.rounding = kRoundings * kEpsilon * final.terms;

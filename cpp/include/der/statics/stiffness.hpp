@@ -98,7 +98,7 @@ class Stiffness {
   SoftDirection nearest_to_zero();
 
  private:
-  /// The softest directions, in the order of their curvatures.
+  /// Some directions, in the order of their curvatures.
   struct SoftSpace {
     Eigen::MatrixXd directions;  // of length 1, over the free degrees of freedom, one a column
     Vector curvatures;           // [N/m]
@@ -109,10 +109,15 @@ class Stiffness {
   void beat() const {
     if (beat_) beat_();
   }
-  double factorize_positive();
+  /// Factorises K plus the smallest shift that makes it positive definite but for so many
+  /// directions, to about a third, and returns the shift; at least the rounding error.
+  double factorize_positive(Index but = 0);
   void judge_doubtful(Stability& stability);
-  SoftSpace softest_space(Index count);
-  SoftSpace rayleigh_ritz(const Eigen::MatrixXd& basis, Index count) const;
+  /// The softest directions; where `below` of them are clearly unstable, those nearest to zero
+  /// instead, by their sizes: the far ones would hide them from the iteration.
+  SoftSpace softest_space(Index count, Index below = 0);
+  /// The softest directions in the span of `basis`, or those nearest to zero.
+  SoftSpace rayleigh_ritz(const Eigen::MatrixXd& basis, Index count, bool nearest) const;
   SoftDirection inverse_iteration();
   [[nodiscard]] SoftDirection soft_direction(Vector free) const;
 

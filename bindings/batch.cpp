@@ -185,6 +185,7 @@ py::list equilibrium(PyBatch& batch, const std::optional<Truth>& given_leave_sad
       [&](Batch& engine) { return engine.equilibrium(leave_saddles, look_for_signals); });
   py::list all;
   for (const auto& report : reports) all.append(report);
+  py::module_::import("der.errors").attr("warn")(py::cast(batch.engine().take_warnings()));
   return all;
 }
 

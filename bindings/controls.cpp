@@ -78,9 +78,7 @@ void set(PySimulation& simulation, const Text& name, const py::object& value,
   } else {
     engine.set(text, to_numbers(value, text), over);
   }
-  if (engine.has_warnings()) {
-    py::module_::import("der.errors").attr("warn")(py::cast(engine.take_warnings()));
-  }
+  simulation.tell_warnings();
 }
 
 py::object value(PySimulation& simulation, const Text& given_name) {

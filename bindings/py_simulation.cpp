@@ -1,3 +1,5 @@
+#include <pybind11/stl.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -72,6 +74,12 @@ void PySimulation::step(std::int64_t count, py::handle self) {
     }
   }
   warn_once();
+  tell_warnings();
+}
+
+void PySimulation::tell_warnings() {
+  if (!engine_.has_warnings()) return;
+  py::module_::import("der.errors").attr("warn")(py::cast(engine_.take_warnings()));
 }
 
 void PySimulation::warn_once() {
@@ -88,9 +96,14 @@ EquilibriumReport PySimulation::equilibrium(py::handle self, bool leave_saddles)
     const CallOut call(*this);
     forces_.apply(engine_.model(), engine_.state(), self);
   }
-  const py::gil_scoped_release unlocked;
-  Heartbeat heartbeat;
-  return engine_.equilibrium(leave_saddles, [&] { heartbeat.beat(); });
+  EquilibriumReport report;
+  {
+    const py::gil_scoped_release unlocked;
+    Heartbeat heartbeat;
+    report = engine_.equilibrium(leave_saddles, [&] { heartbeat.beat(); });
+  }
+  tell_warnings();
+  return report;
 }
 
 std::vector<Mode> PySimulation::modes(std::int64_t count) {

@@ -47,6 +47,8 @@ class PySimulation {
   }
   [[nodiscard]] ForceFunctions& forces() { return forces_; }
   [[nodiscard]] const ForceFunctions& forces() const { return forces_; }
+  /// Issues the warnings that the engine has found.
+  void tell_warnings();
 
  private:
   class Turn;

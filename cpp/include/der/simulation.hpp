@@ -139,7 +139,8 @@ class Simulation {
   void set(std::string_view name, const std::vector<double>& values,
            std::optional<double> over = std::nullopt);
   [[nodiscard]] bool has_warnings() const { return !warnings_.empty(); }
-  /// Doubts that `set` has found since the last call, in sentences: one for each rod, once.
+  /// Doubts found since the last call, in sentences: of `set`, one for each rod, once; of a shape
+  /// that a program has written.
   [[nodiscard]] std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   /// Present values of what has a name, one for each component. Throws Error as `set`.
   [[nodiscard]] std::vector<double> value(std::string_view name) const;
@@ -264,7 +265,7 @@ class Simulation {
   /// Enters what a program has written since the last step in the frames and the audit.
   void enter_writes();
   /// Moves what a state follows to the shape that a program has written into it.
-  void follow_written_shape(State& state, const CancelCallback& beat) const;
+  void follow_written_shape(State& state, const CancelCallback& beat);
   /// The forces at the present state.
   struct Forces {
     Configuration here;

@@ -98,9 +98,12 @@ void Simulation::follow_writes() {
   settle_rotations();
 }
 
-void Simulation::follow_written_shape(State& state, const CancelCallback& beat) const {
-  der::follow_written_shape(model_, *assembler_, *solver_.solver,
-                            energy_monitor_.has_written_angles(state), beat, state);
+void Simulation::follow_written_shape(State& state, const CancelCallback& beat) {
+  for (std::string& warning :
+       der::follow_written_shape(model_, *assembler_, *solver_.solver,
+                                 energy_monitor_.has_written_angles(state), beat, state)) {
+    warnings_.push_back(std::move(warning));
+  }
 }
 
 bool Simulation::has_external_writes() const {

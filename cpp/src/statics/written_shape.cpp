@@ -1,7 +1,14 @@
 #include "der/statics/written_shape.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "der/core/constants.hpp"
@@ -33,16 +40,22 @@ class WrittenSections {
     lay_frames(model_, chains_, here, state_.followed.tail(model_.initial_frames.size()));
   }
 
-  void find() {
-    std::vector<double> turns;
+  /// Returns the names of the rods whose whole turns the shape leaves open.
+  std::set<std::string> find() {
+    std::vector<ReferenceTurn> turns;
     for (const SectionChain& chain : chains_) {
-      turns.push_back(chain.has_end() ? reference_turn(model_, chain, here()) : 0.0);
-      twist_evenly(chain, turns.back());
+      turns.push_back(chain.has_end() ? reference_turn(model_, chain, here()) : ReferenceTurn{});
+      twist_evenly(chain, turns.back().turn);
     }
     balance_sections();
+    std::set<std::string> open;
     for (std::size_t i = 0; i < chains_.size(); ++i) {
-      if (chains_[i].has_end()) find_turn(chains_[i], turns[i]);
+      const bool told = find_balance(chains_[i], turns[i].turn);
+      // From there on the next value is about as near to the turns of the clamps.
+      const bool near = std::abs(turns[i].turn - turns[i].of_clamps) < kPi;
+      if (chains_[i].keeps_twist() && !told && !near) open.insert(chains_[i].rod->name);
     }
+    return open;
   }
 
  private:
@@ -142,36 +155,80 @@ class WrittenSections {
     return std::sqrt(sum);
   }
 
-  /// Twists a chain by two turns more or less, as often as that leaves the nodes in balance, where
-  /// they were not.
-  void find_turn(const SectionChain& chain, double turn) {
+  /// Turns the sections of a chain away from where `twist_evenly` put them: those far from what
+  /// holds them by `most` [rad].
+  void twist_unevenly(const SectionChain& chain, double most) {
+    std::vector<Index> edges;
+    if (!chain.links.front().leaves_clamp()) edges.push_back(chain.first_edge());
+    for (const Link& link : chain.links) {
+      if (!link.arrives() && !(chain.is_ring() && &link == &chain.links.back())) {
+        edges.push_back(link.after);
+      }
+    }
+    const bool held_twice = chain.keeps_twist();
+    const bool from_end = chain.end_is_held() && !chain.start_is_held();
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const double along = (static_cast<double>(i) + 0.5) / static_cast<double>(edges.size());
+      const double share = held_twice ? std::sin(kPi * along) : (from_end ? 1.0 - along : along);
+      angle(edges[i]) += most * share;
+    }
+  }
+
+  /// Looks for sections that leave the nodes of a chain in balance, where they are not: twisted by
+  /// two turns more or less, as often as that brings the nodes nearer to it, and from other starts,
+  /// since sections that bend more easily one way than another may rest in several ways. Returns
+  /// whether the shape tells the turns: far less force is left over than with any other number.
+  bool find_balance(const SectionChain& chain, double turn) {
     constexpr int kMostTurns = 10;
     constexpr double kBalanced = 0.1;     // share of the force left over
     constexpr double kNegligible = 1e-6;  // of the force that two turns more exert
-    const double first = unbalanced(chain);
+    constexpr std::array<double, 8> kStarts{1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0, -4.0};
     const double length = chain.rod->rest_length();
-    if (first <= kNegligible * 4.0 * kPi * chain.rod->GJ / (length * length)) return;
-    const Vector positions = state_.positions;
-    const Vector followed = state_.followed;
-    double least = kBalanced * first;
-    Vector best_positions = positions;
-    Vector best_followed = followed;
-    for (const double way : {1.0, -1.0}) {
-      double last = first;
-      for (int i = 1; i <= kMostTurns; ++i) {
-        twist_evenly(chain, turn + way * 4.0 * kPi * i);
-        balance_sections();
-        const double left = unbalanced(chain);
-        if (left >= last) break;
-        last = left;
-        if (left >= least) continue;
-        least = left;
-        best_positions = state_.positions;
-        best_followed = state_.followed;
+    const double negligible = kNegligible * 4.0 * kPi * chain.rod->GJ / (length * length);
+    struct Found {
+      double left = std::numeric_limits<double>::infinity();  // [N]
+      int turns = 0;                                          // pairs of them that are added
+      Vector positions;
+      Vector followed;
+    };
+    const double first = unbalanced(chain);
+    const Found start{first, 0, state_.positions, state_.followed};
+    Found best = start;
+    std::map<int, double> least{{0, first}};  // [N] left over, by the pairs of turns
+    const auto attempt = [&](int turns, double uneven) {
+      twist_evenly(chain, turn + 4.0 * kPi * turns);
+      twist_unevenly(chain, uneven * 0.5 * kPi);
+      balance_sections();
+      const double left = unbalanced(chain);
+      const auto known = least.emplace(turns, left).first;
+      known->second = std::min(known->second, left);
+      if (left < best.left) best = {left, turns, state_.positions, state_.followed};
+      return left;
+    };
+    const bool has_turns = chain.has_end() && chain.keeps_twist();
+    if (has_turns) {
+      for (const int way : {1, -1}) {
+        double last = first;
+        for (int i = 1; i <= kMostTurns; ++i) {
+          const double left = attempt(way * i, 0.0);
+          if (left >= last) break;
+          last = left;
+        }
       }
     }
-    state_.positions = best_positions;
-    state_.followed = best_followed;
+    const int nearest = best.turns;
+    for (const int turns : {nearest, nearest + 1, nearest - 1}) {
+      for (const double uneven : kStarts) {
+        if (best.left > negligible && (has_turns || turns == nearest)) attempt(turns, uneven);
+      }
+    }
+    const bool better = best.left < kBalanced * first;
+    const Found& taken = better ? best : start;
+    state_.positions = taken.positions;
+    state_.followed = taken.followed;
+    return std::all_of(least.begin(), least.end(), [&](const auto& other) {
+      return other.first == taken.turns || taken.left < kBalanced * other.second;
+    });
   }
 
   const Model& model_;
@@ -185,8 +242,10 @@ class WrittenSections {
 
 }  // namespace
 
-void follow_written_shape(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                          bool angles_are_written, const CancelCallback& beat, State& state) {
+std::vector<std::string> follow_written_shape(const Model& model, const Assembler& assembler,
+                                              LinearSolver& solver, bool angles_are_written,
+                                              const CancelCallback& beat, State& state) {
+  std::vector<std::string> warnings;
   if (model.framed_edges.empty()) {
     follow_written(model, state);
   } else if (angles_are_written) {
@@ -194,9 +253,15 @@ void follow_written_shape(const Model& model, const Assembler& assembler, Linear
   } else if (!lost_angles(model, state)) {
     follow(model, state);
   } else {
-    WrittenSections(model, assembler, solver, beat, state).find();
+    for (const std::string& rod : WrittenSections(model, assembler, solver, beat, state).find()) {
+      warnings.push_back(fmt::format(
+          "the positions that were written do not tell by how many whole turns rod '{}' is "
+          "twisted: the number nearest to the turns of its clamps was taken. Write theta as well",
+          rod));
+    }
     follow(model, state);
   }
+  return warnings;
 }
 
 }  // namespace der

@@ -145,7 +145,8 @@ void lay_frames(const Model& model, const std::vector<SectionChain>& chains,
   }
 }
 
-double reference_turn(const Model& model, const SectionChain& chain, const Configuration& here) {
+ReferenceTurn reference_turn(const Model& model, const SectionChain& chain,
+                             const Configuration& here) {
   const Link& first = chain.links.front();
   const Link& last = chain.links.back();
   const EndMotion start = first.leaves_clamp() ? motion_of_clamp(*first.held, here.controls)
@@ -161,7 +162,8 @@ double reference_turn(const Model& model, const SectionChain& chain, const Confi
   const Path turn =
       end.path * path_about(end.drawn, drawn_turn) * drawn * (present * start.path).conjugate();
   const double half = std::atan2(turn.vec().dot(end.present), turn.w());
-  return 2.0 * nearest_turn(half, 0.5 * (drawn_turn + end.about - start.about));
+  const double of_clamps = drawn_turn + end.about - start.about;
+  return {2.0 * nearest_turn(half, 0.5 * of_clamps), of_clamps};
 }
 
 }  // namespace der

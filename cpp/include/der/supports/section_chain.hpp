@@ -64,10 +64,15 @@ std::vector<SectionChain> section_chains(const Model& model);
 void lay_frames(const Model& model, const std::vector<SectionChain>& chains,
                 const Configuration& here, Eigen::Ref<Vector> frames);
 
-/// The sum of the reference twists [rad] of a chain that has an end, whole turns included, as its
-/// clamps have turned from the drawn shape while the rod followed them to the one `here`, which
-/// tells it up to two turns. Of these values, the one nearest to what the clamps have turned about
-/// their drawn tangents.
-double reference_turn(const Model& model, const SectionChain& chain, const Configuration& here);
+/// The sum of the reference twists [rad] of a chain that has an end, whole turns included.
+struct ReferenceTurn {
+  double turn = 0.0;       ///< of the values that the shape allows, the one nearest to the next
+  double of_clamps = 0.0;  ///< what the clamps have turned about their drawn tangents
+};
+
+/// As the clamps of a chain have turned from the drawn shape while the rod followed them to the one
+/// `here`, which tells it up to two turns.
+ReferenceTurn reference_turn(const Model& model, const SectionChain& chain,
+                             const Configuration& here);
 
 }  // namespace der

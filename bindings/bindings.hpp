@@ -21,5 +21,6 @@ void bind_batch(py::module_& module);
 void bind_steppers(py::module_& module);
 void bind_loops(py::module_& module);
 void bind_unanswered_signals(py::module_& module);
+void bind_progress(py::module_& module);
 
 }  // namespace der::python

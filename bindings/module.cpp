@@ -18,4 +18,5 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_steppers(module);
   bindings::bind_loops(module);
   bindings::bind_unanswered_signals(module);
+  bindings::bind_progress(module);
 }

@@ -64,7 +64,7 @@ ENTRY = """
 
 <!-- no-test: the page is made by running all of these -->
 ```sh
-der_run configs/{name}.yaml --out runs/{name}
+der run configs/{name}.yaml --out runs/{name}
 der plot runs/{name} --what shapes{times}
 ```
 

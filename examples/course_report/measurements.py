@@ -194,7 +194,7 @@ def command_of(run: Hashable) -> str:
     """
     scene, changes = _all_runs()[run]
     sets = [shlex.quote(f"{path}={value}") for path, value in changes.items()]
-    return " ".join([f"der_run configs/{scene}.yaml", *(f"--set {change}" for change in sets)])
+    return " ".join([f"der run configs/{scene}.yaml", *(f"--set {change}" for change in sets)])
 
 
 def scene_of(run: Hashable) -> der.Scenario:

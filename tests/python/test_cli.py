@@ -72,7 +72,11 @@ def test_run_is_the_program(scene, tmp_path):
     result = der.open_run(tmp_path / "run")
     assert result.status == "completed"
     assert result.positions.shape[1] == 11
-    assert "--resume" in command("run", "--help").stdout
+    told = command("run", "--help").stdout
+    assert "Usage: der run [OPTIONS]" in told
+    assert "  der run configs/cantilever.yaml --check\n" in told
+    assert "der_run" not in told
+    assert command("run", "--version").stdout == f"der run {der.__version__}\n"
     assert command("run", "no_such.yaml").returncode == 4
 
 

@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 
 DER_RUN = os.environ.get("DER_RUN", str(Path(sys.executable).with_name("der_run")))
+ROOT = Path(__file__).parents[2]
 
 SPHERES = """\
 title: Three spheres
@@ -860,6 +861,29 @@ def test_progress_and_colours_are_for_terminals(scene: Path, tmp_path: Path) -> 
     assert "[32m" not in text
     assert " left" in text
     assert on_terminal(scene, *length, "--quiet") == ""
+
+
+def test_what_was_not_tested_is_said_when_asked_for(tmp_path: Path) -> None:
+    """A rod whose torsional stiffness is not given is not tested out of its plane."""
+    scene = tmp_path / "rod.yaml"
+    scene.write_text(
+        "rods: [{name: rod, nodes: 11, from: [0, 0], to: [1, 0], cross_section: {circle: {radius:"
+        " 0.01}}, material: {youngs_modulus: 1e9, density: 0}}]\n"
+        "supports: [{rod: rod, at: start, clamp: true}]\n"
+        "loads: [{moment: {rod: rod, at: end, moment: 1}}]\n"
+        "analysis: static\n"
+    )
+    usual = der_run(scene, "--out", tmp_path / "out").stdout
+    verbose = der_run(scene, "--out", tmp_path / "out", "--verbose").stdout
+    assert "not tested" not in usual
+    line = "  plane    not tested out of it, because "
+    assert [text for text in verbose.splitlines() if text.startswith(line)]
+    assert der_run(scene, "--verbose", "--quiet", "--out", tmp_path / "out").returncode == 2
+    # What was tested is said always: this force does not turn with the rod.
+    force = ["--set", "loads=[{point_force: {rod: rod, at: end, force: [0, -1]}}]"]
+    force += ["--set", "rods.rod.material.poissons_ratio=0.3"]
+    tested = der_run(scene, *force, "--out", tmp_path / "out").stdout
+    assert "\n  plane    stable out of it\n" in tested
 
 
 def test_short_runs_take_well_under_a_tenth_of_a_second(scene: Path, tmp_path: Path) -> None:

@@ -334,7 +334,7 @@ def test_progress_line_is_wiped_out(swing, capsys, monkeypatch):
     monkeypatch.setattr("der.progress.ProgressLine.delay", 0.0)
     der.run(swing, callback=slowly, progress=True)
     lines = capsys.readouterr().err.split("\r")
-    assert any(re.fullmatch(r" *\d+%, \d+ s left", line) for line in lines)
+    assert any(re.fullmatch(r"[ \d]{3} % \[#*-*\]  \d+ s left *", line) for line in lines)
     assert lines[-1] == ""
     assert lines[-2].strip() == ""
 

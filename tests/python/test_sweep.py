@@ -1083,4 +1083,4 @@ def test_progress_on_a_terminal_tells_the_time_left(cantilever, tmp_path, monkey
     line.delay = 0.0
     der.sweep(cantilever, {FORCE: "-2:0:30"}, jobs=1, progress=line)
     assert "left" in stream.getvalue()
-    assert "100%" in stream.getvalue()
+    assert "100 % [##############################]  0 s left" in stream.getvalue()

@@ -178,13 +178,19 @@ def test_exact_values_are_within_the_error_bars(rows):
         assert error_bar < max(1e-3 * abs(value(row)), 1e-11), key
 
 
+def arguments_of(command):
+    """Return those of a `der run`, which is the program der_run."""
+    program, subcommand, *arguments = shlex.split(command)
+    assert (program, subcommand) == ("der", "run")
+    return arguments
+
+
 def test_ours_is_what_der_run_gives(rows, tmp_path):
     """The table names a command for each of its numbers: these, to the last bit."""
     runs = {}
     for key in VERIFIED:
         command, probe = rows[key]["command"], rows[key]["probe"]
-        program, *arguments = shlex.split(command)
-        assert program == "der_run"
+        arguments = arguments_of(command)
         if command not in runs:
             out = tmp_path / str(len(runs))
             subprocess.run(
@@ -210,8 +216,8 @@ def test_ours_is_what_der_run_gives(rows, tmp_path):
 def test_what_no_probe_gives_is_printed_by_its_command(rows, tmp_path):
     named = {key for key, row in rows.items() if row["command"] and not row["probe"]}
     assert named == {"explicit_seconds", "implicit_seconds", "blow_up"}
-    assert rows["blow_up"]["command"].startswith("der_run configs/falling_beam_3_explicit_unstable")
-    _, *arguments = shlex.split(rows["blow_up"]["command"])
+    arguments = arguments_of(rows["blow_up"]["command"])
+    assert arguments[0].startswith("configs/falling_beam_3_explicit_unstable")
     failed = subprocess.run(
         [DER_RUN, *arguments, "--out", str(tmp_path / "run")],
         cwd=ROOT,
@@ -236,8 +242,7 @@ def test_rows_of_tables_are_what_their_commands_give(folder, tmp_path, table, co
     """The first and the last, which is the longest fall with the longest step."""
     rows = read(folder / f"data/{table}.csv")
     for i, row in enumerate((rows[0], rows[-1])):
-        program, *arguments = shlex.split(row["command"])
-        assert program == "der_run"
+        arguments = arguments_of(row["command"])
         out = tmp_path / str(i)
         subprocess.run([DER_RUN, *arguments, "--quiet", "--out", str(out)], cwd=ROOT, check=True)
         found = json.loads((out / "summary.json").read_text())["probes"][probe]

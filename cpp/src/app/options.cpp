@@ -13,11 +13,22 @@ constexpr const char* kDescription =
     "and "
     "scene.yaml.";
 
+/// `der run` starts this program under its own name.
+std::string program_name(int argc, const char* const* argv) {
+  return argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "der_run";
+}
+
+std::string examples(const std::string& program) {
+  std::string text = "Examples:\n";
+  for (const char* arguments : {"configs/cantilever.yaml",
+                                "configs/cantilever.yaml --set rods.arm.nodes=101 --out runs/fine",
+                                "configs/cantilever.yaml --check"}) {
+    text += "  " + program + " " + arguments + "\n";
+  }
+  return text;
+}
+
 constexpr const char* kFooter =
-    "Examples:\n"
-    "  der_run configs/cantilever.yaml\n"
-    "  der_run configs/cantilever.yaml --set rods.arm.nodes=101 --out runs/fine\n"
-    "  der_run configs/cantilever.yaml --check\n"
     "\n"
     "DER_LOOPS=plain in the environment keeps the innermost loops to what every processor has, "
     "for\n"
@@ -52,10 +63,10 @@ std::string not_empty(const std::string& path) {
 std::variant<Options, ExitCode> parse_options(int argc, const char* const* argv) {
   Options options;
   std::vector<std::string> settings;
-  CLI::App app(kDescription, "der_run");
-  app.footer(kFooter);
-  app.set_version_flag("--version", std::string("der_run ") + version,
-                       "Print the version and exit");
+  const std::string program = program_name(argc, argv);
+  CLI::App app(kDescription, program);
+  app.footer(examples(program) + kFooter);
+  app.set_version_flag("--version", program + " " + version, "Print the version and exit");
   app.add_option("scene", options.scene, "Scene file (YAML)")->option_text("SCENE");
   app.add_option("--out", options.out, "Folder for the results; runs/<name of SCENE> if not given")
       ->option_text("DIR")
@@ -69,7 +80,12 @@ std::variant<Options, ExitCode> parse_options(int argc, const char* const* argv)
                "Go on with an interrupted run as if it had never stopped")
       ->excludes(check)
       ->option_text(" ");
-  app.add_flag("--quiet", options.quiet, "No progress and no summary; errors are still printed");
+  auto* quiet = app.add_flag("--quiet", options.quiet,
+                             "No progress and no summary; errors are still printed");
+  quiet->option_text(" ");
+  app.add_flag("--verbose", options.verbose, "Say what was not tested, too, and why")
+      ->excludes(quiet)
+      ->option_text(" ");
   app.add_flag("--schema", options.schema,
                "Print the JSON Schema of scene files, for editors, and exit");
   try {

@@ -82,7 +82,8 @@ ExitCode run_scene(const Options& options, Simulation& simulation) {
                      : run_in_folder(folder, simulation, recorder, after_step, stop_at_signal);
   progress.clear();
   if (!options.quiet) {
-    print(run_report(simulation, recorder, outcome, folder, Style::of(stdout)));
+    const Detail detail = options.verbose ? Detail::Full : Detail::Usual;
+    print(run_report(simulation, recorder, outcome, folder, detail, Style::of(stdout)));
     std::fflush(stdout);
   }
   return outcome.failed() ? fail(exit_code(outcome), outcome.message) : exit_code(outcome);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 
 #include "der/app/format.hpp"
@@ -29,26 +30,34 @@ std::string bar(double share, int width) {
 
 }  // namespace
 
-std::string progress_line(const RunPosition& p, double steps_per_second, int width) {
-  const double share =
-      static_cast<double>(p.step) / static_cast<double>(std::max<std::int64_t>(1, p.total_steps));
+std::string progress_line(double share, const std::vector<std::string>& details,
+                          std::optional<double> seconds_left, int width) {
   const std::string percent = fmt::format("{:3.0f} %", std::floor(100.0 * share));
-  std::string left;
-  std::string speed;
-  if (steps_per_second > 0.0) {
-    const double seconds = static_cast<double>(p.total_steps - p.step) / steps_per_second;
-    left = "  " + format_time_left(seconds) + " left";
-    speed = "  " + format_count(std::llround(steps_per_second)) + " steps/s";
-  }
-  const std::string time =
-      fmt::format("  t = {} of {:g} s", format_time(p.time, p.duration), p.duration);
-  for (const std::string& tail : {time + speed + left, time + left, left}) {
+  const std::string left =
+      seconds_left ? "  " + format_time_left(*seconds_left) + " left" : std::string();
+  for (std::size_t kept = details.size() + 1; kept-- > 0;) {
+    std::string tail;
+    for (std::size_t i = 0; i < kept; ++i) tail += "  " + details[i];
+    tail += left;
     const int room = width - static_cast<int>(percent.size() + tail.size()) - 3;
     if (room >= kShortestBar) {
       return percent + " " + bar(share, std::min(room, kLongestBar)) + tail;
     }
   }
   return percent.substr(0, static_cast<std::size_t>(std::max(0, width)));
+}
+
+std::string progress_line(const RunPosition& p, double steps_per_second, int width) {
+  const double share =
+      static_cast<double>(p.step) / static_cast<double>(std::max<std::int64_t>(1, p.total_steps));
+  std::vector<std::string> details{
+      fmt::format("t = {} of {:g} s", format_time(p.time, p.duration), p.duration)};
+  std::optional<double> left;
+  if (steps_per_second > 0.0) {
+    details.push_back(format_count(std::llround(steps_per_second)) + " steps/s");
+    left = static_cast<double>(p.total_steps - p.step) / steps_per_second;
+  }
+  return progress_line(share, details, left, width);
 }
 
 Progress::Progress(bool enabled) : enabled_(enabled && is_terminal(stderr)), pacer_(kInterval) {}

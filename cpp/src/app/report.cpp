@@ -134,9 +134,8 @@ std::string equilibrium_lines(const EquilibriumReport& report, const Style& styl
   return text;
 }
 
-/// The summary of motion out of the plane, but for its warnings.
+/// The summary of motion out of the plane that was tested, but for its warnings.
 std::string out_of_plane_text(const OutOfPlaneVerdict& verdict, const Style& style) {
-  if (!verdict.not_tested.empty()) return "not tested out of it, because " + verdict.not_tested;
   if (verdict.load_factor) {
     return fmt::format("stability out of it lost at the load factor {:.6g}", *verdict.load_factor);
   }
@@ -149,7 +148,13 @@ std::string out_of_plane_text(const OutOfPlaneVerdict& verdict, const Style& sty
       fmt::format("{} out of it in {}", stability.name(), format_count(doubtful, "direction")));
 }
 
-std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
+std::string plane_line(const OutOfPlaneVerdict& verdict, Detail detail, const Style& style) {
+  if (verdict.not_tested.empty()) return line("plane", out_of_plane_text(verdict, style), style);
+  if (detail == Detail::Usual) return {};
+  return line("plane", "not tested out of it, because " + verdict.not_tested, style);
+}
+
+std::string status_line(const Simulation& simulation, const RunOutcome& outcome, Detail detail,
                         const Style& style) {
   std::string status = outcome.status;
   if (outcome.ok()) {
@@ -172,7 +177,7 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
   std::string text = line("status", status, style);
   if (outcome.equilibrium) text += equilibrium_lines(*outcome.equilibrium, style);
   if (const auto plane = out_of_plane_verdict(simulation, outcome)) {
-    text += line("plane", out_of_plane_text(*plane, style), style);
+    text += plane_line(*plane, detail, style);
   }
   return text;
 }
@@ -302,8 +307,9 @@ std::string scene_head(const Scenario& scenario, const Style& style) {
 }
 
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
-                       const RunOutcome& outcome, const RunFolder& folder, const Style& style) {
-  std::string text = status_line(simulation, outcome, style);
+                       const RunOutcome& outcome, const RunFolder& folder, Detail detail,
+                       const Style& style) {
+  std::string text = status_line(simulation, outcome, detail, style);
   text += line("ran", what_ran(simulation), style);
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);

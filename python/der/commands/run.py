@@ -1,4 +1,4 @@
-"""Run a scene; the same as the program der_run, which gets all arguments."""
+"""Run a scene and write its results to a folder; `der run --help` has the options."""
 
 from __future__ import annotations
 
@@ -15,20 +15,18 @@ from der.examples import scene_path
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Take everything that follows as it is."""
-    parser.add_argument(
-        "arguments", nargs="*", metavar="ARGUMENT", help="see `der_run --help` for them"
-    )
+    parser.add_argument("arguments", nargs="*", metavar="ARGUMENT")
     # No argument starts with this character, so that options, even --help, pass as arguments.
     parser.prefix_chars = "\0"
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Turn this process into der_run."""
+    """Turn this process into der_run, which calls itself as its first argument says."""
     program = _find_program()
     sys.stdout.flush()
     # Python ignores it, and so would der_run, which is ended by it otherwise: `der run ... | head`.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    os.execv(program, [str(program), *map(scene_path, arguments.arguments)])
+    os.execv(program, ["der run", *map(scene_path, arguments.arguments)])
 
 
 def _find_program() -> Path:

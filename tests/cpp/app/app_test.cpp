@@ -83,9 +83,9 @@ TEST_CASE("the report names what ran, why, and every probe") {
   Simulation simulation(Scenario::parse(kSpheres));
   Recorder recorder(simulation);
   const RunOutcome outcome = run(simulation, recorder);
-  const std::string report =
-      scene_head(simulation.scenario(), Style::plain()) +
-      run_report(simulation, recorder, outcome, RunFolder("runs/spheres"), Style::plain());
+  const std::string report = scene_head(simulation.scenario(), Style::plain()) +
+                             run_report(simulation, recorder, outcome, RunFolder("runs/spheres"),
+                                        Detail::Usual, Style::plain());
   const std::vector<std::string> parts{"Three spheres",
                                        "completed",
                                        "planar: " + simulation.model().reason,
@@ -110,7 +110,8 @@ TEST_CASE("the report of an analysis lists what it has found") {
         Scenario::parse(straight_rod(11, kPinned + kPush + "analysis: " + analysis + "\n")));
     Recorder recorder(simulation);
     const RunOutcome outcome = run(simulation, recorder);
-    return run_report(simulation, recorder, outcome, RunFolder("runs/rod"), Style::plain());
+    return run_report(simulation, recorder, outcome, RunFolder("runs/rod"), Detail::Usual,
+                      Style::plain());
   };
   const auto has = [](const std::string& report, const std::string& part) {
     CAPTURE(report);

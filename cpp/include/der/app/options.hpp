@@ -17,6 +17,7 @@ struct Options {
   bool check = false;
   bool resume = false;
   bool quiet = false;
+  bool verbose = false;
   bool schema = false;
 };
 

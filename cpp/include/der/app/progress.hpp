@@ -2,11 +2,21 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "der/output/flush_timer.hpp"
 
 namespace der::app {
+
+/// One line of at most `width` columns: percentage, bar, details, time left. Details that do not
+/// fit are left out, the last one first.
+///
+/// `share`         of the work that is done, from 0 to 1
+/// `seconds_left`  nothing: not known yet
+std::string progress_line(double share, const std::vector<std::string>& details,
+                          std::optional<double> seconds_left, int width);
 
 /// Where a run is.
 struct RunPosition {
@@ -16,8 +26,7 @@ struct RunPosition {
   double duration = 0.0;  ///< [s]
 };
 
-/// One line of at most `width` columns: percentage, bar, time, speed, time left; what does not fit
-/// is left out, the least important first. `steps_per_second` 0: not known yet.
+/// The same with the time and the speed of a run. `steps_per_second` 0: not known yet.
 std::string progress_line(const RunPosition& position, double steps_per_second, int width);
 
 /// A line on stderr that shows how far a run is: only on a terminal, at most ten times a second,

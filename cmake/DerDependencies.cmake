@@ -1,22 +1,52 @@
-# Finds what the library and its program stand on. All of it is in Debian:
-# libeigen3-dev libyaml-cpp-dev libhdf5-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-# libspectra-dev libsuitesparse-dev, and doctest-dev, libbenchmark-dev for tests and benchmarks.
+# Finds what the library and its program stand on, and says in one message what is missing. Tests and
+# benchmarks take doctest-dev and libbenchmark-dev of Debian as well, the solver `cholmod`
+# libsuitesparse-dev.
 
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(fmt REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(CLI11 REQUIRED)
-find_package(Spectra 1.0 REQUIRED)  # Lanczos' method, headers only
+set(der_managers "apt install" "dnf install" "brew install" "conda install -c conda-forge")
+set(der_missing "")
+
+# Looks for a package; further arguments are those of find_package. `names` are its names with each
+# of the package managers.
+macro(der_find package names)
+  find_package(${package} ${ARGN} QUIET)
+  if(NOT ${package}_FOUND)
+    string(APPEND der_missing " ${package}")
+    foreach(manager name IN ZIP_LISTS der_managers ${names})
+      string(APPEND "der_line_${manager}" " ${name}")
+    endforeach()
+  endif()
+endmacro()
+
+set(der_eigen libeigen3-dev eigen3-devel eigen eigen)
+set(der_fmt libfmt-dev fmt-devel fmt fmt)
+set(der_json nlohmann-json3-dev json-devel nlohmann-json nlohmann_json)
+set(der_cli11 libcli11-dev cli11-devel cli11 cli11)
+set(der_spectra libspectra-dev spectra-devel spectra spectralib) # Lanczos' method, headers only
+set(der_yaml libyaml-cpp-dev yaml-cpp-devel yaml-cpp yaml-cpp)
+set(der_hdf5 libhdf5-dev hdf5-devel hdf5 hdf5)
+der_find(Eigen3 der_eigen 3.4 NO_MODULE)
+der_find(fmt der_fmt)
+der_find(nlohmann_json der_json)
+der_find(CLI11 der_cli11)
+der_find(Spectra der_spectra 1.0)
+der_find(yaml-cpp der_yaml)
+der_find(HDF5 der_hdf5 COMPONENTS C)
+
+if(der_missing)
+  set(der_lines "")
+  foreach(manager IN LISTS der_managers)
+    string(APPEND der_lines "\n  ${manager}${der_line_${manager}}")
+  endforeach()
+  message(FATAL_ERROR "der needs libraries that are not there:${der_missing}. Install them with one of"
+                      "${der_lines}")
+endif()
 
 # yaml-cpp 0.7 names its target `yaml-cpp`, 0.8 `yaml-cpp::yaml-cpp`.
-find_package(yaml-cpp REQUIRED)
 if(TARGET yaml-cpp::yaml-cpp)
   set(DER_YAML_CPP_TARGET yaml-cpp::yaml-cpp)
 else()
   set(DER_YAML_CPP_TARGET yaml-cpp)
 endif()
-
-find_package(HDF5 REQUIRED COMPONENTS C)
 
 if(NOT DER_WITH_CHOLMOD MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "DER_WITH_CHOLMOD is '${DER_WITH_CHOLMOD}'; use AUTO, ON or OFF")

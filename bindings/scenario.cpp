@@ -13,6 +13,7 @@
 #include "arguments.hpp"
 #include "bindings.hpp"
 #include "der/scenario/document.hpp"
+#include "der/scenario/number_with_unit.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/scenario/series.hpp"
@@ -142,7 +143,9 @@ void bind_facts(ScenarioClass& cls) {
            "Return the scene as YAML text that reads back to the same scene.")
       .def(
           "to_dict", [](const Scenario& s) { return to_python(s.document().root()); },
-          "Return the scene as a new dict, as written: defaults are not filled in.")
+          "Return the scene as a new dict: values with a unit are numbers in SI units; defaults "
+          "are\n"
+          "not filled in.")
       .def("__repr__", &repr)
       .def(py::pickle([](const Scenario& s) { return py::make_tuple(s.to_yaml(), s.source()); },
                       [](const py::tuple& dumped) {
@@ -180,6 +183,10 @@ void bind_scenario(py::module_& module) {
       py::arg("time"),
       "Return offset + amplitude sin(2 pi frequency t + phase) at `time` [s]; `frequency` in Hz, "
       "`phase` in rad.");
+  module.def(
+      "number_with_unit", [](const std::string& text) { return scenario::number_with_unit(text); },
+      py::arg("text"),
+      "Return the number in SI units of a text such as `5 mm`; None for every other text.");
   module.def("json_schema", &json_schema,
              "Return the JSON Schema of a scene file, as text, for editors.");
   module.def("scene_reference", &scene_reference,

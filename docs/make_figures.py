@@ -21,7 +21,9 @@ import der
 import matplotlib.pyplot as plt
 import numpy as np
 from der.plotting import PALETTE, style, time_colours
+from der.plotting.space import make_picture
 from der.plotting.style import MUTED, look
+from matplotlib.patheffects import withStroke
 from tutorials import beam_study, control, falling_rod, finger, fitting
 
 if TYPE_CHECKING:
@@ -457,6 +459,52 @@ def symbols_in_space() -> Figure:
     return der.run(scene).plot("shapes")
 
 
+def directors() -> Figure:
+    """Draw a strip with its tangent, its two directors and the way in which it bends."""
+    scene = {
+        "title": "A strip and its directors",
+        "rods": [
+            {
+                "name": "strip",
+                "nodes": 31,
+                "from": [0, 0, 0],
+                "to": [1, 0, 0],
+                "cross_section": {
+                    "rectangle": {"width": 0.2, "height": 0.05},
+                    "director": [0, 1, 0],
+                },
+                "material": {"youngs_modulus": 1e9, "poissons_ratio": 0.3, "density": 1000},
+            }
+        ],
+        "supports": [{"rod": "strip", "at": "start", "clamp": True}],
+        "model": "spatial",
+        "analysis": "static",
+    }
+    result = der.run(scene)
+    figure = result.plot("shapes")
+    axes = figure.axes[0]
+    picture = make_picture(result)
+    start = np.array([0.62, 0.0, 0.05])
+    for way, text, offset in (
+        (np.array([0.3, 0.0, 0.0]), "tangent t", (-48.0, -16.0)),
+        (np.array([0.0, 0.3, 0.0]), "director 1, of the width: EI1, k1", (5.0, 4.0)),
+        (np.array([0.0, 0.0, 0.3]), "director 2 = t x d1, of the height: EI2, k2", (5.0, 4.0)),
+    ):
+        tail, tip = picture.seen(np.array([start, start + way]))
+        arrow = {"arrowstyle": "-|>", "color": PALETTE[1], "linewidth": 2.0}
+        axes.annotate("", tip, tail, arrowprops=arrow, zorder=20)
+        axes.annotate(
+            text,
+            tip,
+            offset,
+            textcoords="offset points",
+            zorder=20,
+            path_effects=[withStroke(linewidth=3.0, foreground="white")],
+        )
+    axes.get_legend().remove()
+    return figure
+
+
 def finger_traces(path: Path) -> None:
     """Write an animation of the finger of the fourth tutorial, with feedback."""
     controlled = finger.run(finger.Feedback(finger.Inverse()))
@@ -607,6 +655,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         data_flow,
         symbols,
         symbols_in_space,
+        directors,
     )
 }
 # Figures whose function writes the file itself, with the ending of the file.

@@ -6,7 +6,8 @@ import math
 import re
 from argparse import ArgumentTypeError
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+#: A number as scenes spell it, before it is looked at more closely.
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WHOLE = re.compile(r"[+-]?[0-9]+")
 _LEADING_ZERO = re.compile(r"[+-]?0[0-9]")
 _INFINITE_OR_NAN = re.compile(r"[+-]?\.?(?:inf|infinity|nan)", re.IGNORECASE)
@@ -29,7 +30,7 @@ def read_number(text: str) -> int | float | None:
         raise ValueError(
             f"'{text}': infinities and nan are out of range; a word stands in double quotes"
         )
-    if not _NUMBER.fullmatch(text):
+    if not NUMBER.fullmatch(text):
         _refuse_what_python_reads(text)
         return None
     if _LEADING_ZERO.match(text):

@@ -1,6 +1,7 @@
 """Scenarios from files, texts and dicts: one validator, one set of messages."""
 
 import inspect
+import json
 import math
 import pickle
 import re
@@ -11,6 +12,7 @@ from types import MappingProxyType
 import der
 import numpy as np
 import pytest
+from der import _core
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -60,6 +62,53 @@ def test_numpy_scalars(tube):
     scenario = der.Scenario.from_dict(tube)
     assert der.Simulation(scenario).positions.shape == (31, 2)
     assert scenario.to_dict()["time"]["step"] == 0.02
+
+
+def test_texts_with_units_are_the_numbers_in_si_units(tube):
+    scenario = der.Scenario.from_dict(tube)
+    varied = scenario.with_(
+        {
+            "rods.beam.cross_section.tube.outer_radius": "13 mm",
+            "rods.beam.material.youngs_modulus": "70 GPa",
+            "time": {"duration": "500 ms", "step": "1 cs"},
+            "loads.0.point_force.force": [0, "-2 kN"],
+        }
+    )
+    plain = scenario.with_(
+        {
+            "rods.beam.cross_section.tube.outer_radius": 13e-3,
+            "rods.beam.material.youngs_modulus": 70e9,
+            "time": {"duration": 500e-3, "step": 1e-2},
+            "loads.0.point_force.force": [0, -2e3],
+        }
+    )
+    assert varied.to_dict() == plain.to_dict()
+    assert der.Scenario.from_dict(varied.to_dict()).to_yaml() == varied.to_yaml()
+    with pytest.raises(der.SceneError, match="'kg' is not a unit of this kind"):
+        scenario.with_({"time.step": "5 kg"})
+    with pytest.raises(der.SceneError, match="remove the quotes"):
+        scenario.with_({"time.step": "5"})
+    with pytest.raises(der.SceneError, match="alone, without a unit"):
+        scenario.with_({"rods.beam.nodes": "11 m"})
+
+
+def test_every_unit_of_a_key_is_one_that_numbers_can_have():
+    """It may stand behind a number, and changes nothing."""
+    units = set(re.findall(r"\[([^\[\]]+)\](?: Default:[^\[\]]*)?\"", der.json_schema()))
+    units.discard("of the key")
+    assert {"m", "Pa", "kg/m^3", "N m^2", "N s/m^2", "rad/m", "1/m", "Hz"} < units
+    for unit in units:
+        assert _core.number_with_unit(f"2.5 {unit}") == 2.5, unit
+
+
+def test_the_pattern_of_the_schema_has_numbers_with_units_and_no_others():
+    pattern = json.loads(der.json_schema())["$defs"]["circle"]["properties"]["radius"]["pattern"]
+    for text in ("5 mm", "-.5e-3mm", "3 N m^2", "30°", "2 1/m", "2/m", "1.2 g/cm³", "1 µm"):
+        assert re.search(pattern, text), text
+        assert _core.number_with_unit(text) is not None
+    for text in ("5", "mm", "1 2", "1/2", "5 -3", "1.2.3", ""):
+        assert not re.search(pattern, text), text
+        assert _core.number_with_unit(text) is None
 
 
 def test_every_diagnostic_names_its_key_path(tube):

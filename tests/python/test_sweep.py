@@ -22,7 +22,7 @@ from der.sweeps.chunk import BROKEN, Chunk, run_chunk
 from der.sweeps.design import make_design
 from der.sweeps.store import FILE, Store, locked
 from der.sweeps.table import Column, Table
-from der.sweeps.values import Range, parse_values
+from der.sweeps.values import Range, parse_values, stored
 from sweep_scenes import FORCE, STIFFNESS, STRIP, bits, cantilever, of_each_kind
 
 
@@ -1073,6 +1073,44 @@ def test_exit_code_if_every_member_fails(cantilever, tmp_path, capsys):
     code = main(["sweep", str(path), "--vary", f"{FORCE}=-1,-2", "--out", str(tmp_path / "s")])
     assert code == 3
     assert "2 members, 2 failed (not_held 2)" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("spelled", "numbers"),
+    [
+        ("5 mm, 1 cm", [5e-3, 1e-2]),
+        ("4 mm:8 mm:3", [4e-3, 6e-3, 8e-3]),
+        ("1 mm:100 mm:3:log", [1e-3, 1e-2, 1e-1]),
+        (["5 mm", 0.005, 0.01], [5e-3, 1e-2]),
+    ],
+)
+def test_values_with_units_are_numbers_in_the_table(cantilever, tmp_path, spelled, numbers):
+    path = f"rods.{cantilever['rods'][0]['name']}.cross_section.circle.radius"
+    cantilever["rods"][0]["cross_section"] = {"circle": {"radius": 0.01}}
+    cantilever["rods"][0]["material"] = {"youngs_modulus": 1e9, "density": 1000}
+    swept = der.sweep(cantilever, {path: spelled}, out=tmp_path / "units")
+    assert swept[path].tolist() == pytest.approx(numbers, rel=1e-15)
+    plain = der.sweep(cantilever, {path: swept[path].tolist()}, out=tmp_path / "plain")
+    assert swept["tip_y"].tolist() == plain["tip_y"].tolist()
+
+
+def test_ranges_to_sample_have_units(cantilever, tmp_path):
+    with_units = make_design({"a": "1 mm:5 mm", "b": "2:3"}, sample="sobol:8")
+    plain = make_design({"a": "1:5", "b": "2:3"}, sample="sobol:8")
+    for (a, b), (c, d) in zip(with_units, plain, strict=True):
+        assert stored(a) == pytest.approx(1e-3 * c, rel=1e-15)
+        assert b == d
+    assert with_units.to_json() != plain.to_json()
+    with pytest.raises(ValueError, match=r"a: 1 mm:5 mm is a range to sample from.*1 mm:5 mm:11"):
+        make_design({"a": "1 mm:5 mm"})
+    with pytest.raises(ValueError, match="both ends of a range have the same unit"):
+        make_design({"a": "1 mm:5 cm:3"})
+
+
+def test_a_unit_of_another_kind_fails_before_anything_runs(cantilever, tmp_path):
+    with pytest.raises(der.SceneError, match="'kg' is not a unit of this kind"):
+        der.sweep(cantilever, {FORCE: "5 kg"}, out=tmp_path / "s")
+    assert not (tmp_path / "s").exists()
 
 
 def test_progress_on_a_terminal_tells_the_time_left(cantilever, tmp_path, monkeypatch):

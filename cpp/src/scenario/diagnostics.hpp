@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "der/core/error.hpp"
@@ -40,8 +41,9 @@ Path operator/(const Path& path, Segment next);
 /// More diagnostics than these help nobody, and a text with a million mistakes is read no further.
 inline constexpr std::size_t kMaxDiagnostics = 100;
 
-/// Collects everything that is wrong with a document. The diagnostic after the last that is kept
-/// throws SceneError with those before it.
+/// Collects what the reader finds in a document: everything that is wrong with it, and the numbers
+/// that it has in units of their own. The diagnostic after the last that is kept throws SceneError
+/// with those before it.
 class Diagnostics {
  public:
   explicit Diagnostics(const Document& document) : document_(document) {}
@@ -61,6 +63,11 @@ class Diagnostics {
   /// Whether vectors of two components stand beside vectors of three. Then nothing that compares
   /// places can be checked.
   [[nodiscard]] bool vectors_differ() const { return vectors_[0] && vectors_[1]; }
+
+  /// Notes the number in SI units of a value that has a unit.
+  void note_number(const Place& place, double number) { numbers_.emplace(place.value, number); }
+  /// The numbers of all values that have a unit.
+  [[nodiscard]] const std::unordered_map<const Value*, double>& numbers() const { return numbers_; }
 
   [[nodiscard]] std::size_t size() const { return found_.size(); }
   /// Whether something at this path, or below it, is wrong: then nothing can be concluded from it.
@@ -88,6 +95,7 @@ class Diagnostics {
   const Document& document_;
   std::array<std::optional<FirstVector>, 2> vectors_;  // the first with 2 components, and with 3
   std::vector<Found> found_;
+  std::unordered_map<const Value*, double> numbers_;
 };
 
 }  // namespace der::scenario

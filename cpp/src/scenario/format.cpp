@@ -43,8 +43,9 @@ struct RealOf {
 
   Reading<double> operator()(const Plain& plain) const { return read_real(plain.text, unit); }
   Reading<double> operator()(const std::string& text) const {
-    if (read_real(text, unit).value) return {std::nullopt, "remove the quotes"};
-    return {std::nullopt, read_real(text, unit).problem};
+    Reading<double> reading = read_real(text, unit);
+    if (reading.value && !reading.had_unit) return {std::nullopt, "remove the quotes"};
+    return reading;
   }
   Reading<double> operator()(std::int64_t value) const { return {static_cast<double>(value), {}}; }
   Reading<double> operator()(double value) const {
@@ -78,6 +79,7 @@ bool read_number(const Shape& shape, const Place& place, Diagnostics& diagnostic
     return false;
   }
   out = *reading.value;
+  if (reading.had_unit) diagnostics.note_number(place, out);
   return check_range(shape, out, place, diagnostics);
 }
 
@@ -236,7 +238,11 @@ bool read_pair(const Shape& shape, const Place& place, Diagnostics& diagnostics,
 }  // namespace
 
 void report_expected(const std::string& what, const Place& place, Diagnostics& diagnostics,
-                     const std::string& hint) {
+                     const std::string& given_hint) {
+  const std::string* text = std::get_if<std::string>(&place.value->content);
+  const std::string hint = text && text->empty() && given_hint.empty()
+                               ? "to remove the key write nothing, which is None in Python"
+                               : given_hint;
   diagnostics.add(place, fmt::format("expected {}, got {}{}{}", what,
                                      std::visit(Describe{}, place.value->content),
                                      hint.empty() || hint.front() == ';' ? "" : ": ", hint));

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "der/scenario/reader.hpp"
+#include "scenario/number.hpp"
 #include "scenario/scene_text.hpp"
 
 namespace der {
@@ -22,7 +23,7 @@ class SchemaBuilder {
   Json schema(const Shape& shape) {
     switch (shape.kind) {
       case Shape::Kind::Number:
-        return bounded({{"type", "number"}}, shape.range);
+        return bounded(number_in(shape.unit), shape.range);
       case Shape::Kind::Integer:
         return bounded({{"type", "integer"}}, shape.range);
       case Shape::Kind::Boolean:
@@ -34,11 +35,11 @@ class SchemaBuilder {
       case Shape::Kind::Choice:
         return {{"enum", names_of(shape.words)}};
       case Shape::Kind::Vector:
-        return numbers(shape.min_items, 3);
+        return numbers(shape.unit, shape.min_items, 3);
       case Shape::Kind::Pair:
-        return numbers(2, 2);
+        return numbers(shape.unit, 2, 2);
       case Shape::Kind::Triple:
-        return numbers(3, 3);
+        return numbers(shape.unit, 3, 3);
       case Shape::Kind::List:
         return list(shape);
       case Shape::Kind::Table:
@@ -84,11 +85,15 @@ class SchemaBuilder {
     return schema;
   }
 
-  static Json numbers(int fewest, int most) {
-    return {{"type", "array"},
-            {"items", {{"type", "number"}}},
-            {"minItems", fewest},
-            {"maxItems", most}};
+  /// A number, or a text of one with a unit behind it; the reader knows which units those are.
+  static Json number_in(const std::string& unit) {
+    if (unit.empty()) return {{"type", "number"}};
+    return {{"type", {"number", "string"}}, {"pattern", scenario::kNumberWithUnitPattern}};
+  }
+
+  static Json numbers(const std::string& unit, int fewest, int most) {
+    return {
+        {"type", "array"}, {"items", number_in(unit)}, {"minItems", fewest}, {"maxItems", most}};
   }
 
   /// One of the keys that say which kind it is, and no other of them.

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <limits>
 
+#include "der/scenario/number_with_unit.hpp"
+#include "scenario/unit.hpp"
+
 namespace der::scenario {
 namespace {
 
@@ -168,45 +171,53 @@ std::string other_base_problem(std::string_view text) {
                      value);
 }
 
-/// Factor that turns a value with the unit `written` into one with `unit`; 0 if unknown.
-double unit_factor(std::string_view written, std::string_view unit) {
-  if (unit == "rad" && (written == "deg" || written == "degrees" || written == "°")) {
-    return std::acos(-1.0) / 180.0;
-  }
-  if (unit.empty() || written.size() < unit.size()) return 0.0;
-  const std::string_view prefix = written.substr(0, written.size() - unit.size());
-  if (written.substr(prefix.size()) != unit) return 0.0;
-  struct Prefix {
-    std::string_view symbol;
-    double factor;
-  };
-  static constexpr std::array<Prefix, 11> prefixes{{{"", 1.0},
-                                                    {"n", 1e-9},
-                                                    {"u", 1e-6},
-                                                    {"\u00b5", 1e-6},
-                                                    {"\u03bc", 1e-6},
-                                                    {"m", 1e-3},
-                                                    {"c", 1e-2},
-                                                    {"d", 1e-1},
-                                                    {"k", 1e3},
-                                                    {"M", 1e6},
-                                                    {"G", 1e9}}};
-  const auto* known = std::find_if(prefixes.begin(), prefixes.end(),
-                                   [&](const Prefix& p) { return p.symbol == prefix; });
-  return known == prefixes.end() ? 0.0 : known->factor;
+struct InUnit {
+  std::string_view number;
+  Unit unit;
+};
+
+/// The parts of a text that is a number with a unit behind it; nothing for every other text.
+std::optional<InUnit> with_unit(std::string_view text, const Decimal& number) {
+  if (number.length == 0) return std::nullopt;
+  const std::string behind = with_plain_blanks(text.substr(number.length));
+  const std::optional<Unit> unit = read_unit(trimmed(behind));
+  if (!unit) return std::nullopt;
+  return InUnit{text.substr(0, number.length), *unit};
 }
 
-std::string unit_problem(std::string_view number, std::string_view written, std::string_view unit) {
-  const std::optional<double> value = convert<double>(number);
-  const double factor = unit_factor(written, unit);
-  if (value && factor > 0.0) {
-    return fmt::format("write the value in {} without a unit: {:.12g}", unit, *value * factor);
+/// The number in SI units: the same bits as those of the text with its decimal point shifted.
+/// Nothing for one that is out of range.
+std::optional<double> in_si(const InUnit& written) {
+  const auto& [number, unit] = written;
+  const std::size_t e = number.find_first_of("eE");
+  long exponent = 0;
+  if (e != std::string_view::npos) {
+    const std::optional<int> given = convert<int>(number.substr(e + 1));
+    if (!given) return std::nullopt;
+    exponent = *given;
   }
+  const std::optional<double> value =
+      convert<double>(fmt::format("{}e{}", number.substr(0, e), exponent + unit.decimals));
+  if (!value) return std::nullopt;
+  const double scaled = *value / unit.denominator * unit.numerator;
+  return std::isfinite(scaled) ? std::optional(scaled) : std::nullopt;
+}
+
+constexpr const char* kOutOfRange =
+    "it is out of the range of double-precision numbers (1e-308 to 1.8e308)";
+
+/// What to write in place of an unknown unit, or one of another kind than that of the key.
+std::string unit_clause(std::string_view written, std::string_view unit) {
   if (unit.empty()) return "write the number alone, without a unit";
-  return fmt::format("write the value in {}, without a unit", unit);
+  return fmt::format("'{}' is not a unit of this kind: write the number in {}", written, unit);
 }
 
-/// Why a text that is no decimal number is none, as far as one can tell.
+bool is_fortran_exponent(std::string_view text) {
+  return (text.front() == 'd' || text.front() == 'D') && text.size() > 1 &&
+         skip_digits(text, skip_sign(text, 1)) == text.size();
+}
+
+/// Why a text that is no decimal number is none, as far as one can tell. `unit` is that of the key.
 std::string diagnose(std::string_view text, const Decimal& start, std::string_view unit) {
   if (is_infinite_or_nan(text)) return "infinities and NaN are out of range";
   if (std::string problem = other_base_problem(text); !problem.empty()) return problem;
@@ -228,28 +239,37 @@ std::string diagnose(std::string_view text, const Decimal& start, std::string_vi
   if (is_digit(rest.front()) || rest.front() == '-' || rest.front() == '+') {
     return "is a comma or a bracket missing?";
   }
-  if ((rest.front() == 'd' || rest.front() == 'D') && rest.size() > 1 &&
-      skip_digits(rest, skip_sign(rest, 1)) == rest.size()) {
+  if (is_fortran_exponent(rest)) {
     return fmt::format("write {}e{}", text.substr(0, start.length), rest.substr(1));
   }
   const auto first = static_cast<unsigned char>(rest.front());
-  if (std::isalpha(first) != 0 || first >= 0x80 || first == '%') {
-    return unit_problem(text.substr(0, start.length), rest, unit);
-  }
-  return {};
+  const bool may_be_unit = std::isalpha(first) != 0 || first >= 0x80 || first == '%';
+  return may_be_unit ? unit_clause(rest, unit) : std::string();
 }
 
 }  // namespace
 
 Reading<double> read_real(std::string_view text, std::string_view unit) {
   const Decimal number = scan(text);
-  if (text.empty() || number.length != text.size()) {
-    return {std::nullopt, diagnose(text, number, unit)};
+  if (number.length == text.size() && !text.empty()) {
+    if (number.leading_zero) return {std::nullopt, leading_zero_problem(text)};
+    const std::optional<double> value = convert<double>(text);
+    return value ? Reading<double>{value, {}} : Reading<double>{std::nullopt, kOutOfRange};
   }
-  if (number.leading_zero) return {std::nullopt, leading_zero_problem(text)};
-  const std::optional<double> value = convert<double>(text);
-  if (value) return {value, {}};
-  return {std::nullopt, "it is out of the range of double-precision numbers (1e-308 to 1.8e308)"};
+  const std::optional<InUnit> found = with_unit(text, number);
+  if (!found) return {std::nullopt, diagnose(text, number, unit)};
+  if (number.leading_zero) return {std::nullopt, leading_zero_problem(found->number)};
+  if (unit.empty() || !found->unit.same_kind(*read_unit(unit))) {
+    return {std::nullopt, unit_clause(trimmed(text.substr(number.length)), unit)};
+  }
+  const std::optional<double> value = in_si(*found);
+  return value ? Reading<double>{value, {}, true} : Reading<double>{std::nullopt, kOutOfRange};
+}
+
+std::optional<double> number_with_unit(std::string_view text) {
+  const Decimal number = scan(text);
+  const std::optional<InUnit> found = with_unit(text, number);
+  return found && !number.leading_zero ? in_si(*found) : std::nullopt;
 }
 
 Reading<std::int64_t> read_whole(std::string_view text) {

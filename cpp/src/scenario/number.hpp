@@ -13,13 +13,20 @@ template <class T>
 struct Reading {
   std::optional<T> value;
   std::string problem;
+  bool had_unit = false;  ///< the value stands in the text in a unit that is written there
 };
+
+/// The form of a number with a unit, as a regular expression.
+inline constexpr const char* kNumberWithUnitPattern =
+    R"(^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)? *(1?/)?[^0-9/. +-].*$)";
 
 /// Numbers are decimal on purpose: an optional sign, digits with or without a point on either side
 /// of them (`.5`, `5.`), an optional exponent (`1e-3`). Everything that YAML 1.1 or a programming
 /// language would read differently (`010`, `0x1F`, `1_000`, `1:30`) is refused with a hint, as are
-/// infinities, NaN, values outside the range of a double and values with a unit.
-/// `unit` is the unit of the key, for the hint.
+/// infinities, NaN, and values outside the range of a double.
+///
+/// `unit` is the unit of the key. A unit of the same kind may stand behind the number: `5 mm` is
+/// the same double as `5e-3`.
 Reading<double> read_real(std::string_view text, std::string_view unit);
 
 /// Reads a whole number; `2.0` and `1e2` are refused with a hint.

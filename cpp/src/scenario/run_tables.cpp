@@ -197,8 +197,8 @@ Format<OutputText> output_format() {
 const Format<SceneText>& scene_format() {
   static const Format<SceneText> format = mapping(
       Table<SceneText>("scene",
-                       "A scene is one YAML mapping with these keys. All values are in SI "
-                       "units.")
+                       "A scene is one YAML mapping with these keys. Values are in SI "
+                       "units, or have a unit behind them.")
           .optional("title", &Scene::title, text(), "One line that says what the scene shows.")
           .optional(
               "model", &Scene::model,

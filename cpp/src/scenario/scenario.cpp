@@ -1,4 +1,5 @@
 #include <memory>
+#include <unordered_map>
 #include <utility>
 
 #include "der/scenario/document.hpp"
@@ -11,8 +12,7 @@ namespace {
 
 using scenario::Document;
 
-scenario::Scene read_scene(const Document& document) {
-  scenario::Diagnostics diagnostics(document);
+scenario::Scene read_scene(const Document& document, scenario::Diagnostics& diagnostics) {
   scenario::SceneText text;
   if (document.root().mapping()) {
     scenario::scene_format().read({&document.root()}, diagnostics, text);
@@ -25,6 +25,28 @@ scenario::Scene read_scene(const Document& document) {
   }
   diagnostics.throw_if_any();
   return static_cast<scenario::Scene&&>(text);
+}
+
+using Numbers = std::unordered_map<const scenario::Value*, double>;
+
+/// The same value with numbers in place of what has a unit.
+scenario::Value in_si_units(const scenario::Value& value, const Numbers& numbers) {
+  if (const auto number = numbers.find(&value); number != numbers.end()) {
+    return {number->second, value.mark};
+  }
+  if (const scenario::Sequence* items = value.sequence()) {
+    scenario::Sequence converted;
+    for (const scenario::Value& item : *items) converted.push_back(in_si_units(item, numbers));
+    return {std::move(converted), value.mark};
+  }
+  if (const scenario::Mapping* entries = value.mapping()) {
+    scenario::Mapping converted;
+    for (const scenario::Entry& entry : *entries) {
+      converted.push_back({entry.key, in_si_units(entry.value, numbers), entry.mark});
+    }
+    return {std::move(converted), value.mark};
+  }
+  return value;
 }
 
 Document varied(Document document, const std::vector<Override>& overrides) {
@@ -48,7 +70,12 @@ Scenario Scenario::parse(std::string_view text, const std::string& source,
 }
 
 Scenario Scenario::from_document(std::shared_ptr<const Document> document) {
-  auto scene = std::make_shared<const scenario::Scene>(read_scene(*document));
+  scenario::Diagnostics diagnostics(*document);
+  auto scene = std::make_shared<const scenario::Scene>(read_scene(*document, diagnostics));
+  if (const Numbers& numbers = diagnostics.numbers(); !numbers.empty()) {
+    document = std::make_shared<const Document>(in_si_units(document->root(), numbers),
+                                                document->source());
+  }
   return {std::move(document), std::move(scene)};
 }
 

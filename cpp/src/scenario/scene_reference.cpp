@@ -1,7 +1,10 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "der/scenario/reader.hpp"
@@ -20,9 +23,17 @@ constexpr const char* kIntroduction = R"(# Scene reference
 
 This page is made from the tables that the scene reader itself works with.
 
-A scene is one YAML file. All values are in SI units and are written as plain decimal numbers:
-`0.5`, `.5`, `-2`, `1e-3`. Numbers with a unit (`5 mm`), a leading zero (`010`) or separators
-(`1_000`), other bases, infinities and NaN are refused; so is `2.0` where a whole number is needed.
+A scene is one YAML file. Values are plain decimal numbers in SI units: `0.5`, `.5`, `-2`, `1e-3`.
+Numbers with a leading zero (`010`) or separators (`1_000`), other bases, infinities and NaN are
+refused; so is `2.0` where a whole number is needed.
+
+A unit of the same kind as that of the key may stand behind a number, in lists and tables too: `5 mm`,
+`[0, -2 kN]`, `1 GPa`, `1.2 g/cm^3`, `3 kN m`, `30 deg`, `20 ms`. Units are made of `m`, `g`, `s`, `rad`,
+`N`, `Pa`, `Hz` with the prefixes `n`, `u`, `m`, `c`, `d`, `k`, `M`, `G`, and of `deg` (or `°`), `turn`,
+`min` and `h`. A product has a blank, `*` or `·`, a quotient `/`, a power `^2` (`m2` and `m²` are the
+same). `5 mm` is the same number as `5e-3`, which is what saved scenes say. A unit of another kind is
+refused, and so is every unit where the key has none. Curvatures are in `1/m`; `rad/m` is a twist.
+
 Truth values are `true` and `false`, also as `True` and `FALSE`; `yes` and `on` are refused. Names are
 made of letters, digits, `_` and `-` and do not start with a digit. Unknown, duplicate and missing keys are errors. YAML anchors and aliases work; tags,
 merge keys and several documents in one file do not.
@@ -30,6 +41,10 @@ merge keys and several documents in one file do not.
 A value is overridden by its path: keys and list items joined by dots, items by their `name` or their
 number, as in `rods.beam.nodes=101` or `loads.0.gravity=[0, -1.62]`. An empty value removes what the
 path names.
+
+Supports and loads of the plane, as pictures draw them:
+
+![Symbols of supports and loads](images/symbols.png)
 
 ## Planes and space
 
@@ -68,7 +83,11 @@ The section of a rod has two directors: director 1 is the direction of its width
 its height, t x d1 with the tangent t in the direction of growing arc length. `EI1` and `k1` belong to
 bending toward director 1, `EI2` and `k2` to bending toward director 2. The `director` of a
 cross-section is that of the width where the rod begins; without it the width points along z, so that
-a planar rod bends toward its height. From edge to edge the directors go along the rod without twist;
+a planar rod bends toward its height.
+
+![A strip with its tangent and its two directors](images/directors.png)
+
+From edge to edge the directors go along the rod without twist;
 `initial_twist` turns them further. Twist is positive when it is right-handed about the tangent.
 
 `natural_curvature` is a number, or a list of one for each node, in a scene of two components; in a
@@ -77,6 +96,130 @@ curvature about z there, of a rod drawn without twist at one z; 0 is a rod that 
 stress. At the node of a jump a list has the mean of the cell there: of edges of one length, half of
 the sum of both sides. `natural_twist` is a number, or a list of one for each node.
 )";
+
+/// What one writes of a table, as lines of a scene.
+struct Example {
+  std::string_view table;
+  std::string_view lines;
+};
+constexpr std::array<Example, 33> kExamples{{
+    {"rod", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}})"},
+    {"circle", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}})"},
+    {"tube", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {tube: {inner_radius: 11 mm, outer_radius: 13 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}})"},
+    {"rectangle", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {rectangle: {width: 20 mm, height: 1 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}})"},
+    {"ellipse", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {ellipse: {width: 20 mm, height: 8 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}})"},
+    {"stiffness", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {stiffness: {EA: 1e4, EI: 0.1, GJ: 0.08, mass_per_length: 0.05}}})"},
+    {"internal damping", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 1 MPa, density: 1100, damping: {bending: 10 ms}}})"},
+    {"material", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, poissons_ratio: 0.33, density: 2700}})"},
+    {"sphere", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700},
+     spheres: [{at: all, radius: 6 mm, density: 7000}, {at: end, radius: 2 cm, density: 7000}]})"},
+    {"node", R"(loads:
+  - point_force: {rod: rod, at: {node: -2}, force: [0, -2]})"},
+    {"joint", R"(rods:
+  - {name: beam, nodes: 11, from: [0, 0], to: [1, 0], cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}}
+  - {name: post, nodes: 11, from: [1, 0], to: [1, -1], cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}}
+joints:
+  - {name: corner, of: [{rod: beam, at: end}, {rod: post, at: start}]}
+supports:
+  - {rod: post, at: end, clamp: true})"},
+    {"support", R"(supports:
+  - {rod: rod, at: start, clamp: true}
+  - {rod: rod, at: end, fix: [y]})"},
+    {"prescribed motion", R"(supports:
+  - {rod: rod, at: start, clamp: true,
+     prescribe: {y: {times: [0, 1], values: [0, 20 mm], smooth: true}}})"},
+    {"table", R"(supports:
+  - {rod: rod, at: start, clamp: true,
+     prescribe: {angle: {times: [0, 0.5, 1], values: [0, 90 deg, 0]}}})"},
+    {"sine", R"(supports:
+  - {rod: rod, at: start, clamp: true,
+     prescribe: {y: {sine: {amplitude: 5 mm, frequency: 2 Hz}}}})"},
+    {"rotation", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0, 0], to: [1, 0, 0], cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, poissons_ratio: 0.33, density: 2700}}
+supports:
+  - {rod: rod, at: start, clamp: true,
+     prescribe: {rotation: {axis: [1, 0, 0], angle: {times: [0, 1], values: [0, 90 deg]}}}}
+loads:
+  - gravity: [0, 0, -9.81])"},
+    {"spring", R"(supports:
+  - {rod: rod, at: start, clamp: true}
+  - {rod: rod, at: end, spring: {stiffness: [0, 500], rotational_stiffness: 2}})"},
+    {"load", R"(loads:
+  - gravity: [0, -9.81]
+  - {name: push, point_force: {rod: rod, at: end, force: [0, -2]}})"},
+    {"table of vectors", R"(loads:
+  - point_force: {rod: rod, at: end,
+      force: {times: [0, 0.5], values: [[0, 0], [0, -2]], smooth: true}})"},
+    {"sine of vectors", R"(loads:
+  - point_force: {rod: rod, at: end,
+      force: {sine: {amplitude: [0, 2], frequency: 2 Hz, phase: 90 deg}}})"},
+    {"damping", R"(loads:
+  - damping: {coefficient: 0.5})"},
+    {"point force", R"(loads:
+  - point_force: {rod: rod, at: 0.75, force: [0, -2 kN]})"},
+    {"moment", R"(loads:
+  - moment: {rod: rod, at: end, moment: 3 N m})"},
+    {"distributed force", R"(loads:
+  - distributed_force: {rod: rod, from: 0.2, to: 0.8, force: [0, -100 N/m]})"},
+    {"foundation", R"(loads:
+  - foundation: {rod: rod, stiffness: [0, 1e4]})"},
+    {"fluid", R"(rods:
+  - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700},
+     spheres: [{at: all, radius: 6 mm, density: 7000}]}
+loads:
+  - gravity: [0, -9.81]
+  - fluid: {density: 1000, viscosity: 1 mPa s})"},
+    {"actuation", R"(actuation:
+  - {name: chamber, rod: rod, from: 0.1, to: 0.5,
+     natural_curvature: {times: [0, 1], values: [0, 5]}})"},
+    {"time", R"(time: {duration: 2 s, step: 1 ms, integrator: tr_bdf2})"},
+    {"analysis", R"(analysis: {modes: {count: 3}})"},
+    {"continuation", R"(analysis: {continuation: {from: 0, to: 2}})"},
+    {"solver", R"(solver: {linear: banded, max_iterations: 100})"},
+    {"output", R"(output:
+  every: 10 ms
+  probes: {tip: {rod: rod, at: end, quantity: y}})"},
+    {"probe", R"(output:
+  probes:
+    deepest: {rod: rod, over: rod, reduce: min, quantity: y})"},
+}};
+
+std::string example(const TableInfo& table) {
+  const auto* found = std::find_if(kExamples.begin(), kExamples.end(),
+                                   [&](const Example& each) { return each.table == table.name; });
+  return found == kExamples.end() ? "" : fmt::format("```yaml\n{}\n```\n\n", found->lines);
+}
 
 std::string anchor(const TableInfo& table) {
   std::string id = table.name;
@@ -165,7 +308,8 @@ class ReferenceWriter {
     if (!written_.insert(table.name).second) return;
     std::string title = table.name;
     title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
-    text_ += fmt::format("\n<a id=\"{}\"></a>\n\n## {}\n\n{}\n\n", anchor(table), title, table.doc);
+    text_ += fmt::format("\n<a id=\"{}\"></a>\n\n## {}\n\n{}\n\n{}", anchor(table), title,
+                         table.doc, example(table));
     text_ += "| key | value | unit | default | meaning |\n|---|---|---|---|---|\n";
     for (const FieldInfo& field : table.fields) text_ += row(field, table.unit_of(field));
     for (const Alternatives& alternatives : table.alternatives) {

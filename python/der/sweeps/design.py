@@ -108,7 +108,9 @@ class Design:
     def to_json(self) -> str:
         """Return a text that tells this design from any other."""
         values = [
-            [v.low, v.high, v.log] if isinstance(v, Range) else list(map(stored, v))
+            [v.low, v.high, v.log, *filter(None, [v.unit])]
+            if isinstance(v, Range)
+            else list(map(stored, v))
             for v in self.values
         ]
         own: dict[str, Any] = {"paths": self.paths, "values": values, "zipped": self.zipped}
@@ -198,8 +200,8 @@ def make_design(
     for path, own in values.items():
         if isinstance(own, Range):
             raise ValueError(
-                f"{path}: {own.low:g}:{own.high:g} is a range to sample from: add the number of "
-                f"values, as {own.low:g}:{own.high:g}:11, or sample with sobol:N or lhs:N"
+                f"{path}: {own} is a range to sample from: add the number of "
+                f"values, as {own}:11, or sample with sobol:N or lhs:N"
             )
     design = Design(tuple(values), tuple(values.values()), zipped)
     if not zipped:

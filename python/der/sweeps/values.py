@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from der.spelled_numbers import read_number
+from der._core import number_with_unit
+from der.spelled_numbers import NUMBER, read_number
 from der.value_lists import check_value_list
 
 #: Values of a range and points of a sample, at most: all of them are held in memory.
@@ -21,6 +22,28 @@ _SPELLING = (
     "write values as 1,2,5, a range with its number of values as 0:1:11 (or 1e6:1e9:7:log), or a "
     "range to sample from as 0:1 (or 1e6:1e9:log)"
 )
+
+
+class WithUnit(str):
+    """A number with its unit, as ``5 mm``: a text for the scene, which knows what unit a key has.
+
+    Tables hold the number in SI units.
+
+    Attributes
+    ----------
+    number
+        In SI units.
+    """
+
+    number: float
+
+    def __new__(cls, text: str) -> WithUnit:
+        """Make it from a text that `number_with_unit` reads."""
+        number = number_with_unit(text)
+        assert number is not None
+        made = super().__new__(cls, text)
+        made.number = number
+        return made
 
 
 @dataclass(frozen=True)
@@ -33,6 +56,8 @@ class Range:
         Its ends.
     log
         Whether equal shares of it are equal ratios.
+    unit
+        Of both ends; empty for the unit of the key.
 
     Raises
     ------
@@ -43,6 +68,7 @@ class Range:
     low: float
     high: float
     log: bool = False
+    unit: str = ""
 
     def __post_init__(self) -> None:
         """See that `at` has numbers to compute with."""
@@ -53,11 +79,18 @@ class Range:
                 "largest number: take ends that are nearer"
             )
 
-    def at(self, share: float) -> float:
+    def at(self, share: float) -> float | WithUnit:
         """Return the value at a share of the range, from 0 to 1."""
         if self.log:
-            return float(self.low * (self.high / self.low) ** share)
-        return float(self.low + (self.high - self.low) * share)
+            value = float(self.low * (self.high / self.low) ** share)
+        else:
+            value = float(self.low + (self.high - self.low) * share)
+        return WithUnit(f"{value!r} {self.unit}") if self.unit else value
+
+    def __str__(self) -> str:
+        """Return it as the command line spells it."""
+        behind = f" {self.unit}" if self.unit else ""
+        return f"{self.low:g}{behind}:{self.high:g}{behind}"
 
 
 #: What a parameter goes through: values, or a range to sample from.
@@ -72,8 +105,8 @@ def parse_values(text: str) -> Values:
     text
         ``1,2,5``: these values. ``0:1:11``: 11 values from 0 to 1, both ends included; with
         ``:log`` at the end, in equal ratios. ``0:1``, or ``1e6:1e9:log``: a range to sample from.
-        A value may be a number, a word, a text in double quotes, true, false, null, or a list
-        in brackets.
+        A value may be a number, one with a unit (``5 mm``, ``1 mm:5 mm:5``), a word, a text in
+        double quotes, true, false, null, or a list in brackets.
 
     Raises
     ------
@@ -107,7 +140,7 @@ def as_values(given: str | Iterable[Any]) -> Values:
     if not isinstance(given, Iterable):
         raise ValueError(f"expected a sequence of values, got {given!r}: write [{given!r}]")
     check_value_list(given)
-    values = tuple(_plain(value) for value in given)
+    values = tuple(_with_unit(_plain(value)) for value in given)
     if not values:
         raise ValueError("there is no value")
     for value in values:
@@ -122,10 +155,12 @@ def as_values(given: str | Iterable[Any]) -> Values:
 
 
 def stored(value: Any) -> Any:
-    """Return a value as a table holds it: numbers and texts as they are, the rest as JSON.
+    """Return a value as a table holds it: numbers in SI units and texts, the rest as JSON.
 
     So are whole numbers of more than 64 bits, which SQLite lacks.
     """
+    if isinstance(value, WithUnit):
+        return value.number
     if isinstance(value, int) and not isinstance(value, bool):
         return value if -(2**63) <= value < 2**63 else json.dumps(value)
     return value if isinstance(value, (float, str)) else json.dumps(value)
@@ -154,8 +189,29 @@ def _plain(value: Any) -> Any:
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
+def _with_unit(value: Any) -> Any:
+    """Return a text that is a number with a unit as such; everything else as it is."""
+    if isinstance(value, str) and number_with_unit(value) is not None:
+        return WithUnit(value)
+    return value
+
+
+def _split_unit(text: str) -> tuple[str, str]:
+    """Return the number and the unit of a text; it as it is, and no unit, where it has none."""
+    if number_with_unit(text) is None:
+        return text, ""
+    number = NUMBER.match(text)
+    assert number is not None
+    return number[0], text[number.end() :].strip()
+
+
 def _parse_range(text: str) -> Values:
     fields = [field.strip() for field in text.split(":")]
+    parted = [_split_unit(field) for field in fields[:2]]
+    fields[:2] = [number for number, _ in parted]
+    unit = parted[0][1]
+    if any(other != unit for _, other in parted):
+        raise ValueError(f"'{text}': both ends of a range have the same unit")
     log = fields[-1] == _LOG
     numbers = [number for field in fields if (number := read_number(field)) is not None]
     has_ends = len(numbers) == 2 or (len(numbers) == 3 and isinstance(numbers[2], int))
@@ -165,7 +221,7 @@ def _parse_range(text: str) -> Values:
     if log and not (low > 0.0 and high > 0.0):
         raise ValueError(f"'{text}': both ends of a range in equal ratios are greater than 0")
     if len(numbers) == 2:
-        return Range(low, high, log)
+        return Range(low, high, log, unit)
     count = int(numbers[2])
     if not 2 <= count <= MOST_VALUES:
         raise ValueError(f"'{text}': a range has at least 2 values and at most {MOST_VALUES}")
@@ -176,7 +232,8 @@ def _parse_range(text: str) -> Values:
         spaced = np.linspace(ends.low, ends.high, count).tolist()
     between_whole = isinstance(numbers[0], int) and isinstance(numbers[1], int)
     # A number of nodes is to be a whole number.
-    return tuple(_whole_where_all_are(spaced) if between_whole else spaced)
+    values = _whole_where_all_are(spaced) if between_whole else spaced
+    return tuple(WithUnit(f"{value!r} {unit}") for value in values) if unit else tuple(values)
 
 
 def _whole_where_all_are(values: list[float]) -> list[float] | list[int]:
@@ -205,6 +262,8 @@ def _parse_value(text: str) -> Any:
         raise ValueError(f"a value is empty: {_SPELLING}")
     if (number := read_number(text)) is not None:
         return number
+    if number_with_unit(text) is not None:
+        return WithUnit(text)
     if text[0] not in '["{' and text not in ("true", "false", "null"):
         return text
     try:

@@ -5,9 +5,13 @@
 #include <random>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "der/core/constants.hpp"
 #include "der/scenario/document.hpp"
+#include "der/scenario/load.hpp"
+#include "der/scenario/number_with_unit.hpp"
 #include "der/scenario/scenario.hpp"
 #include "scene_texts.hpp"
 
@@ -56,11 +60,13 @@ TEST_CASE("numbers: what other readers would take differently is refused with a 
       {"1e999", "out of the range"},
       {"-1e999", "out of the range"},
       {"1e-999", "out of the range"},
-      {"5 mm", "write the value in m without a unit: 0.005"},
-      {"5mm", "without a unit: 0.005"},
-      {"3 km", "without a unit: 3000"},
-      {"2 m", "without a unit: 2"},
-      {"2 inch", "write the value in m, without a unit"},
+      {"2 inch", "'inch' is not a unit of this kind: write the number in m"},
+      {"2 kg", "'kg' is not a unit of this kind: write the number in m"},
+      {"2 m^2", "'m^2' is not a unit of this kind"},
+      {"2 m/s m", "'m/s m' is not a unit of this kind"},
+      {"2 %", "'%' is not a unit of this kind"},
+      {"010 mm", "write 10 or 8"},
+      {"1e308 km", "out of the range"},
       {"1/2", "arithmetic is not evaluated"},
       {"2*3", "arithmetic is not evaluated"},
       {"2^3", "arithmetic is not evaluated"},
@@ -105,10 +111,80 @@ TEST_CASE("numbers: what other readers would take differently is refused with a 
   }
 }
 
-TEST_CASE("numbers: angles in degrees are converted in the hint") {
-  const std::string said = diagnostics(
-      {{"supports", "[{rod: beam, at: start, clamp: true, prescribe: {angle: 180 deg}}]"}});
-  CHECK(contains(said, "write the value in rad without a unit: 3.14159265359"));
+double angle(const std::string& text) {
+  const Scenario scene = beam({{"supports",
+                                "[{rod: beam, at: start, clamp: true, prescribe: {angle: "
+                                "{times: [0, 20 ms], values: [0, " +
+                                    text + "]}}}]"}});
+  return scene.scene().supports[0].rotation->values.back();
+}
+
+double stiffness(const std::string& text) {
+  const Scenario scene = beam(
+      {{"rods.beam.cross_section.circle", ""},
+       {"rods.beam.material", ""},
+       {"rods.beam.cross_section.stiffness", "{EA: 1, EI: " + text + ", mass_per_length: 1}"}});
+  return *std::get<scenario::Stiffness>(scene.scene().rods[0].cross_section).EI;
+}
+
+double density(const std::string& text) {
+  return beam({{"rods.beam.material.density", text}}).scene().rods[0].material->density;
+}
+
+double duration(const std::string& text) {
+  return beam({{"time.duration", text}}).scene().time.duration;
+}
+
+TEST_CASE("numbers: a unit of the kind of the key may stand behind a number") {
+  // The same bits as of the number in SI units.
+  CHECK(read("5 m/s") == 5.0);
+  CHECK(read("-12.3 mm/s") == -12.3e-3);
+  CHECK(read(".7e2 cm/s") == 0.7);
+  CHECK(read("1.1 µm/s") == 1.1e-6);
+  CHECK(read("36 m/h") == 0.01);
+  CHECK(read("6 km/min") == 100.0);
+  CHECK(read("5\u00a0mm/s") == 5e-3);
+  CHECK(read("'5 mm/s'") == 5e-3);
+  CHECK(duration("20 ms") == 0.02);
+  CHECK(duration("2 min") == 120.0);
+  CHECK(density("1.19 g/cm^3") == 1190.0);
+  CHECK(density("1190 kg/m3") == 1190.0);
+  CHECK(density("1190 kg/m³") == 1190.0);
+  CHECK(density("1.19 kg m^-3") == 1.19);
+  for (const char* same : {"2.5 kN m^2", "2.5 kNm^2", "2.5 kN*m^2", "2.5 kN·m²", "2.5e3 Pa m^4"}) {
+    CAPTURE(same);
+    CHECK(stiffness(same) == 2500.0);
+  }
+  CHECK(angle("180 deg") == kPi);
+  CHECK(angle("90°") == kPi / 2.0);
+  CHECK(angle("-2.5 turn") == -5.0 * kPi);
+  CHECK(angle("3 mrad") == 3e-3);
+  CHECK(angle("45deg") == kPi / 4.0);
+}
+
+TEST_CASE("numbers: a frequency is no angular one, and a curvature no twist") {
+  const std::string sine =
+      diagnostics({{"loads", "[{gravity: {sine: {amplitude: [0, 1], frequency: 2 rad/s}}}]"}});
+  CHECK(contains(sine, "'rad/s' is not a unit of this kind: write the number in Hz"));
+  CHECK(contains(diagnostics({{"rods.beam.natural_curvature", "2 rad/m"}}), "'rad/m' is not"));
+  CHECK(contains(diagnostics({{"rods.beam.initial_twist", "2/m"}}), "'/m' is not"));
+  CHECK(beam({{"rods.beam.natural_curvature", "2/m"}}).to_yaml() ==
+        beam({{"rods.beam.natural_curvature", "2.0"}}).to_yaml());
+  CHECK(contains(diagnostics({{"rods.beam.material.poissons_ratio", "30 %"}}), "alone"));
+  CHECK(contains(diagnostics({{"rods.beam.material.poissons_ratio", "0.3 rad"}}), "alone"));
+}
+
+TEST_CASE("numbers: a scene keeps them in SI units, and texts as they are") {
+  const Scenario scene = beam({{"title", "5 mm"},
+                               {"rods.beam.cross_section.circle.radius", "5 mm"},
+                               {"loads", "[{gravity: [0, -981 cm/s^2]}]"}});
+  CHECK(scene.scene().title == "5 mm");
+  const std::string text = scene.to_yaml();
+  CAPTURE(text);
+  CHECK(contains(text, "title: 5 mm"));
+  CHECK(contains(text, "radius: 0.005"));
+  CHECK(contains(text, "gravity: [0, -9.81]"));
+  CHECK(Scenario::parse(text).to_yaml() == text);
 }
 
 TEST_CASE("numbers: whole numbers") {

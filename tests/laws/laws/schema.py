@@ -171,5 +171,5 @@ def _is_vector(form: Schema) -> bool:
     return (
         form.get("type") == "array"
         and form.get("maxItems") == 3
-        and form["items"] == {"type": "number"}
+        and "number" in form["items"].get("type", "")
     )

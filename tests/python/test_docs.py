@@ -5,6 +5,7 @@ is a test of that program.
 """
 
 import importlib.util
+import json
 import re
 import shutil
 from pathlib import Path
@@ -71,6 +72,23 @@ def test_scene_reference_is_what_the_reader_generates():
     """If not: der schema --markdown > docs/scene_reference.md."""
     written = (ROOT / "docs" / "scene_reference.md").read_text(encoding="utf-8")
     assert written.rstrip() == der.scene_reference().rstrip()
+
+
+def test_each_group_of_keys_has_an_example():
+    """Those that stand within another group, or differ by a word from one, have it there."""
+    text = (DOCS / "scene_reference.md").read_text(encoding="utf-8")
+    groups = re.split(r'^<a id="[^"]+"></a>\n\n## ', text, flags=re.MULTILINE)[1:]
+    without = {group.partition("\n")[0] for group in groups if "```yaml\n" not in group}
+    assert without == {
+        "Scene",
+        "Cross-section",
+        "Member of a joint",
+        "Static analysis",
+        "Modes analysis",
+        "Buckling analysis",
+        "Table of vectors in space",
+        "Sine of vectors in space",
+    }
 
 
 def test_steppers_page_has_every_integrator_with_its_order():
@@ -225,6 +243,30 @@ def test_code_of_a_tutorial_is_that_of_its_program(module):
             assert code in program
     for scene in re.findall(r"^```yaml\n(.*?)^```$", page, flags=re.DOTALL | re.MULTILINE):
         assert scene == (TUTORIALS / f"{module}.yaml").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def make_notebooks(monkeypatch):
+    monkeypatch.syspath_prepend(DOCS)
+    return importlib.import_module("make_notebooks")
+
+
+@pytest.mark.parametrize("page", ["beam_study", "control"])
+def test_notebooks_are_their_pages_and_run(page, make_notebooks, tmp_path, monkeypatch, capsys):
+    """If they are others: python docs/make_notebooks.py."""
+    assert page in make_notebooks.PAGES
+    text = (TUTORIALS / f"{page}.ipynb").read_text(encoding="utf-8")
+    assert text == make_notebooks.notebook(page)
+    assert f"({page}.ipynb)" in (TUTORIALS / f"{page}.md").read_text(encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    cells = json.loads(text)["cells"]
+    code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    assert len(code) >= 4
+    names = {"__name__": "__main__"}
+    for number, source in enumerate(code):
+        exec(compile(source, f"{page}.ipynb, cell {number}", "exec"), names)
+    printed = capsys.readouterr().out
+    assert {"beam_study": "converged", "control": "off by 0."}[page] in printed
 
 
 def test_tutorial_of_the_falling_rod(tutorial):

@@ -60,6 +60,7 @@ def animate(
     *,
     fps: float = 25.0,
     speed: float | None = None,
+    view: str | None = None,
     progress: ProgressFunction | None = None,
 ) -> Path:
     """Write a result as an animation.
@@ -80,6 +81,9 @@ def animate(
     speed
         Simulated seconds per second of the animation; a speed other than 1 is shown. The default is
         1 for runs of 1 to 20 s, and a round number that makes others last about 8 s.
+    view
+        In space: ``3d``, in perspective, the default, or the axes to the right and up, such as
+        ``xz``.
     progress
         Told how much is done, from 0 to 1.
 
@@ -92,7 +96,7 @@ def animate(
     ------
     ValueError
         For another ending, an fps or speed out of range, more than 20,000 frames, a run in which
-        nothing moves (a static one, or one of a single frame).
+        nothing moves (a static one, or one of a single frame), and a view that there is not.
     ModuleNotFoundError
         For an MP4 without imageio-ffmpeg.
     """
@@ -107,7 +111,7 @@ def animate(
     from der.plotting.space import make_picture  # here, because matplotlib takes long to load
     from der.plotting.style import style
 
-    picture = make_picture(result)
+    picture = make_picture(result, view)
     cut = _cut(result, make_film(result), _gif_rate(fps) if gif else fps, speed)
     with style():
         stage = _set_stage(picture, cut)
@@ -289,7 +293,7 @@ def _set_stage(picture: Picture, cut: _Cut) -> Axes:
             loc="lower right",
             bbox_to_anchor=(1.0, above),
             borderaxespad=0.1,
-            ncols=min(entries, _ENTRIES),
+            ncols=int(np.ceil(entries / max(rows, 1))),  # rows of about the same length
         )
     return axes
 

@@ -43,12 +43,13 @@ class Result(RunData):
         times: Sequence[float] | None = None,
         probes: Sequence[str] | None = None,
         views: Sequence[str] | None = None,
+        scale: float = 1.0,
         title: str | None = None,
     ) -> Figure:
         """Draw the shapes coloured by time and the probes against time; see `der.plot`."""
         from der.plotting import plot  # here, because matplotlib takes long to load
 
-        return plot(self, what, times=times, probes=probes, views=views, title=title)
+        return plot(self, what, times=times, probes=probes, views=views, scale=scale, title=title)
 
     def animate(
         self,
@@ -56,12 +57,13 @@ class Result(RunData):
         *,
         fps: float = 25.0,
         speed: float | None = None,
+        view: str | None = None,
         progress: ProgressFunction | None = None,
     ) -> Path:
         """Write an animation, GIF or MP4, true to time; see `der.animate`."""
         from der.animation import animate  # here, because matplotlib takes long to load
 
-        return animate(self, path, fps=fps, speed=speed, progress=progress)
+        return animate(self, path, fps=fps, speed=speed, view=view, progress=progress)
 
     def export(
         self,

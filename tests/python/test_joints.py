@@ -13,6 +13,7 @@ import der
 import matplotlib
 import numpy as np
 import pytest
+from der.viewing.payload import make_payload
 
 matplotlib.use("Agg")
 
@@ -259,8 +260,11 @@ def test_pictures_show_loads_and_clamps_at_joints(tmp_path: Path) -> None:
     scene["joints"][0]["kind"] = "hinge"
     scene["loads"] = scene["loads"][1:]
     del scene["output"]
-    figure = der.run(scene).plot()
+    hinged = der.run(scene)
+    (hinge,) = make_payload(hinged)["hinges"]
+    joint = hinged.rods[hinge["rod"]].nodes[hinge["place"]]
+    figure = hinged.plot()
     (circles,) = [line for line in figure.axes[0].lines if line.get_gid() == "hinges"]
-    assert circles.get_xydata().shape == (1, 2)
+    assert circles.get_xydata() == pytest.approx(hinged.positions[-1, [joint]])
     figure.savefig(tmp_path / "frame.png")
     assert (tmp_path / "frame.png").stat().st_size > 5000

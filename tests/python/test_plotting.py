@@ -453,3 +453,26 @@ def test_every_stepper_has_a_look_of_its_own_in_every_figure():
     for name in names:  # alone in a figure, too
         ((_, colour, marker),) = _looks([row(name)])
         assert (to_hex(colour), marker) == looks[name]
+
+
+def test_displacements_are_drawn_larger_where_asked_for(tube):
+    tube["title"] = "Stiff tube"
+    result = der.run(tube)
+    axes = result.plot("shapes", times=[0.5], scale=50.0).axes[0]
+    start, end = result.model.initial_positions, result.positions[-1]
+    (line,) = lines_of(axes)[:1]
+    assert line.get_xydata() == pytest.approx(start + 50.0 * (end - start), abs=1e-12)
+    assert axes.get_title(loc="left") == "Stiff tube (displacements drawn 50 times as large)"
+    support = max(symbols_of(axes, "support").values(), key=lambda place: place[0])
+    assert support == pytest.approx(start[-1] + 50.0 * (end[-1] - start[-1]))
+    assert "larger" not in result.plot("probes", scale=50.0).axes[0].get_title(loc="left")
+    for wrong in (0.0, -1.0, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="scale of displacements is a positive number"):
+            result.plot(scale=wrong)
+
+
+def test_modes_have_no_scale(tube):
+    del tube["time"], tube["output"]
+    modes = der.run({**tube, "analysis": {"modes": {"count": 1}}})
+    with pytest.raises(ValueError, match="a modes run have no scale"):
+        modes.plot(scale=2.0)

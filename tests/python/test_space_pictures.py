@@ -1,12 +1,15 @@
 """Pictures of runs in space: perspective, sections as they lie, symbols, floor."""
 
 import copy
+import itertools
 from pathlib import Path
 
 import der
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from der.animation import _cut, _set_stage
+from der.film import make_film
 from der.plotting.camera import along_axes, perspective
 from der.plotting.floor import Floor
 from der.plotting.shapes import Shape
@@ -353,3 +356,75 @@ def test_shapes_between_frames_have_directors_between_theirs(helix):
     assert cut.directors[0][7] == pytest.approx(mixed)
     shape = Shape(cut.positions[7], int(cut.frames[7]), "red", None, [cut.directors[0][7]])
     assert len(make_picture(result)._rods(shape).corners) > 0
+
+
+def boxes(figure):
+    """Where the texts of a figure are, by what they say, without those that are not drawn."""
+    figure.canvas.draw()
+    texts = [*figure.texts, *(text for axes in figure.axes for text in axes.texts)]
+    for axes in figure.axes:
+        if axes.axison:
+            for axis in (axes.xaxis, axes.yaxis):
+                low, high = sorted(axis.get_view_interval())
+                ticks = zip(axis.get_ticklocs(), axis.get_ticklabels(), strict=True)
+                texts += [label for place, label in ticks if low <= place <= high]
+                texts.append(axis.label)
+        if axes.get_legend() is not None:
+            texts += axes.get_legend().get_texts()
+    shown = [text for text in texts if text.get_visible() and text.get_text()]
+    return [(text.get_text(), text.get_window_extent()) for text in shown]
+
+
+def overlaps(figure):
+    """Pairs of texts that lie on each other by more than a pixel."""
+    return [
+        (one, other)
+        for (one, a), (other, b) in itertools.combinations(boxes(figure), 2)
+        if min(a.x1, b.x1) - max(a.x0, b.x0) > 1.0 and min(a.y1, b.y1) - max(a.y0, b.y0) > 1.0
+    ]
+
+
+EXAMPLES = ("helix_spring", "twisted_ring", "spun_strip", "hanging_coil", "helical_buckling")
+EXAMPLES += ("bent_cantilever_45", "finger", "falling_beam_21", "lee_frame", "beam_on_foundation")
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_texts_of_pictures_do_not_lie_on_each_other(name):
+    result = der.run(f"example:{name}")
+    assert overlaps(result.plot("shapes")) == []
+    if result.model.dimension == 3:
+        assert overlaps(result.plot("shapes", views=["xz"])) == []
+
+
+@pytest.mark.parametrize("view", ["3d", "xz"])
+@pytest.mark.parametrize("name", ["twisted_ring", "spun_strip"])
+def test_texts_of_animations_do_not_lie_on_each_other(name, view):
+    result = der.run(f"example:{name}")
+    cut = _cut(result, make_film(result), 10.0, 0.5)
+    axes = _set_stage(make_picture(result, view), cut)
+    axes.annotate(cut.texts[-1], (0.0, 1.0), (0.0, 6.0), "axes fraction", "offset points")
+    assert overlaps(axes.get_figure(root=True)) == []
+
+
+@pytest.mark.parametrize("size", [0.013, 0.047, 1.0, 1234.5])
+@pytest.mark.parametrize("shape", [(1, 1, 1), (-1, 0.5, 2), (0.02, 1, 0.02), (0.3, 0.3, 1)])
+def test_numbers_of_small_floors_do_not_lie_on_each_other(size, shape):
+    """Four modes one below the other leave little room for each."""
+    x, y, z = (size * part for part in shape)
+    scene = {
+        "rods": [
+            {
+                "name": "rod",
+                "points": [[0, 0, 0], [x / 2, 0, 0], [x / 2, y, 0.3 * z], [x, y, z]],
+                "cross_section": {"stiffness": {"EA": 1e3, "EI": 1, "GJ": 1, "mass_per_length": 1}},
+            }
+        ],
+        "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+        "analysis": {"modes": {"count": 4}},
+    }
+    figure = der.run(scene).plot("shapes")
+    assert overlaps(figure) == []
+    for axes in figure.axes:  # the titles are all there, and some numbers
+        texts = [text.get_text() for text in axes.texts]
+        assert all(any(text.startswith(name) for text in texts) for name in "xyz")
+        assert len(texts) >= 6

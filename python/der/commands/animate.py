@@ -33,6 +33,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="simulated seconds per second of the animation (default: 1 for runs of 1 to 20 s, "
         "else a round number for about 8 s)",
     )
+    parser.add_argument(
+        "--view",
+        metavar="AXES",
+        help="in space: 3d, in perspective (default), or the axes to the right and up, such as xz",
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -42,6 +47,13 @@ def execute(arguments: argparse.Namespace) -> int:
     result = open_run(arguments.run)
     out = arguments.out or arguments.run / "animation.gif"
     with progress_on_terminal() as progress:
-        animate(result, out, fps=arguments.fps, speed=arguments.speed, progress=progress)
+        animate(
+            result,
+            out,
+            fps=arguments.fps,
+            speed=arguments.speed,
+            view=arguments.view,
+            progress=progress,
+        )
     print(out)
     return 0

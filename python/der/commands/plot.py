@@ -41,6 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "xz; 3d,xy draws two views",
     )
     parser.add_argument(
+        "--scale",
+        type=float,
+        default=1.0,
+        metavar="X",
+        help="draw displacements X times as large, where a stiff structure shows none",
+    )
+    parser.add_argument(
         "--probes",
         nargs="+",
         metavar="NAME",
@@ -70,10 +77,14 @@ def _plot_run(arguments: argparse.Namespace) -> Figure:
         times=arguments.times,
         probes=arguments.probes,
         views=None if arguments.view is None else arguments.view.split(","),
+        scale=arguments.scale,
     )
 
 
 def _plot_sweep(arguments: argparse.Namespace) -> Figure:
-    if arguments.times or arguments.view or arguments.what != "overview":
-        raise ValueError("a sweep has neither times nor views: leave out --times, --view, --what")
+    options = (arguments.times, arguments.view, arguments.what != "overview")
+    if any(options) or arguments.scale != 1.0:
+        raise ValueError(
+            "a sweep has neither times nor shapes: leave out --times, --view, --scale, --what"
+        )
     return load_sweep(arguments.run).plot(arguments.probes)

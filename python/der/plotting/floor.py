@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -23,6 +24,7 @@ _CELLS = 6  # along the longer side
 _NARROWEST = 0.3  # of the floor, against its longer side
 _AWAY = 7.0  # of numbers from the rim [points]
 _LETTER, _LINE = 5.0, 15.0  # what a letter and a line of numbers take [points]
+_HEIGHT = 9.0  # of a number [points]
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,8 +89,17 @@ class Floor:
             ),
             autolim=False,
         )
-        for rim in rims:
-            self._write(axes, camera, rim, scale, metres_per_point)
+        labels = [
+            label for rim in rims for label in self._labels(camera, rim, scale, metres_per_point)
+        ]
+        taken: list[tuple[Array, Array]] = []
+        for label in sorted(labels, key=lambda label: not label.is_title):
+            low, high = label.box(metres_per_point)
+            # A number that would lie on another one, as in corners of small pictures, is left out.
+            if any(np.all(low < above) and np.all(below < high) for below, above in taken):
+                continue
+            taken.append((low, high))
+            label.write(axes)
 
     def shadow(self, axes: Axes, camera: Camera, faces: Faces) -> None:
         """Draw what the light from above leaves out."""
@@ -132,10 +143,10 @@ class Floor:
         left = feet[int(np.argmin(camera.project(feet @ self.frame)[:, 0]))]
         yield _Rim(2, np.array([left, [*left[:2], self.high[2]]]), np.array([-1.0, 0.0]))
 
-    def _write(
-        self, axes: Axes, camera: Camera, rim: _Rim, scale: LengthScale, metres_per_point: float
-    ) -> None:
-        """Write numbers beside a rim, where there is room for them, and its title."""
+    def _labels(
+        self, camera: Camera, rim: _Rim, scale: LengthScale, metres_per_point: float
+    ) -> Iterator[_Label]:
+        """Return the numbers beside a rim, as far apart as they are wide, and its title."""
         axis = int(np.argmax(np.abs(self.frame[rim.k])))
         sign = float(self.frame[rim.k, axis])
         outwards = rim.outwards / max(float(np.linalg.norm(rim.outwards)), 1e-12)
@@ -143,35 +154,69 @@ class Floor:
         ticks = self._ticks(rim.k)
         texts = tick_texts((sign * ticks - scale.origin[axis]) / scale.metres)
         widest = _LETTER * max((len(text) for text in texts), default=0)
-        step = np.abs(ends[1] - ends[0]) / metres_per_point
-        step *= self.step / max(float(np.ptp(rim.ends[:, rim.k])), 1e-300)
+        places = np.repeat(rim.ends[:1], len(ticks), axis=0)
+        places[:, rim.k] = ticks
+        points = camera.project(places @ self.frame)[:, :2]
+        # The shortest: those far away are nearer to each other.
+        step = np.abs(np.diff(points, axis=0)).min(axis=0, initial=np.inf) / metres_per_point
         apart = max(step[0] / (1.3 * widest + 1.0), step[1] / (1.2 * _LINE))
         fits = [n for n in (1, 2, 5, 10, 20) if n * apart > 1.0]
         shown = np.round(ticks / self.step) % (fits[0] if fits else 50) == 0
         # The corner where two rims meet has none.
         shown &= ticks > rim.ends[0, rim.k] + 0.2 * self.step
         shown &= ticks < rim.ends[1, rim.k] - (0.2 * self.step if rim.k < 2 else -1e-9)
-        places = np.repeat(rim.ends[:1], len(ticks), axis=0)
-        places[:, rim.k] = ticks
-        points = camera.project(places @ self.frame)[:, :2]
-        labels = [(points[n], _AWAY, texts[n]) for n in np.flatnonzero(shown)]
+        for n in np.flatnonzero(shown):
+            yield _Label(texts[n], points[n], _AWAY, outwards)
         if rim.k == 2:
-            labels.append((ends[1] + [0.0, _LINE * metres_per_point], _AWAY, scale.label(axis)))
+            top = ends[1] + [0.0, _LINE * metres_per_point]
+            yield _Label(scale.label(axis), top, _AWAY, outwards, is_title=True)
         else:  # beyond the numbers
             past = min(widest / max(abs(outwards[0]), 0.1), _LINE / max(abs(outwards[1]), 0.1))
-            labels.append((0.5 * (ends[0] + ends[1]), _AWAY + 4.0 + past, scale.label(axis)))
-        for point, away, text in labels:
-            axes.annotate(
-                text,
-                tuple(point),
-                tuple(away * outwards),
-                textcoords="offset points",
-                ha="right" if outwards[0] < -0.4 else "left" if outwards[0] > 0.4 else "center",
-                va="top" if outwards[1] < -0.4 else "center",
-                color=_NUMBERS,
-                fontsize=8,
-                annotation_clip=False,
-            )
+            middle = 0.5 * (ends[0] + ends[1])
+            yield _Label(scale.label(axis), middle, _AWAY + 4.0 + past, outwards, is_title=True)
+
+
+@dataclass(frozen=True, eq=False)
+class _Label:
+    """A text that is so many points away from a point of the picture, in a direction."""
+
+    text: str
+    point: Array
+    away: float
+    outwards: Array
+    is_title: bool = False
+
+    def box(self, metres_per_point: float) -> tuple[Array, Array]:
+        """Return about where the lower left and upper right corner are [points]."""
+        size = np.array([_LETTER * len(self.text), _HEIGHT])
+        anchor = self.point / metres_per_point + self.away * self.outwards
+        shares = {"right": 1.0, "left": 0.0, "center": 0.5, "top": 1.0}
+        low = anchor - size * [shares[self._across], shares[self._upright]]
+        return low, low + size
+
+    def write(self, axes: Axes) -> None:
+        """Write it."""
+        axes.annotate(
+            self.text,
+            tuple(self.point),
+            tuple(self.away * self.outwards),
+            textcoords="offset points",
+            ha=self._across,
+            va=self._upright,
+            color=_NUMBERS,
+            fontsize=8,
+            annotation_clip=False,
+        )
+
+    @property
+    def _across(self) -> Literal["left", "center", "right"]:
+        if abs(self.outwards[0]) <= 0.4:
+            return "center"
+        return "left" if self.outwards[0] > 0.0 else "right"
+
+    @property
+    def _upright(self) -> Literal["top", "center"]:
+        return "top" if self.outwards[1] < -0.4 else "center"
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,6 +52,7 @@ def plot(
     times: Sequence[float] | None = None,
     probes: Sequence[str] | None = None,
     views: Sequence[str] | None = None,
+    scale: float = 1.0,
     title: str | None = None,
 ) -> Figure:
     """Draw a result: shapes coloured by time, and probes against time.
@@ -71,6 +72,10 @@ def plot(
         Views of a run in space, one below the other: ``"3d"``, in perspective, as without it; or
         the axis to the right and the one upwards, such as ``"xz"``. Modes and the shapes of a path
         have one.
+    scale
+        How many times as large as they are displacements are drawn, from the shape as drawn in the
+        scene: for structures so stiff that nothing is seen otherwise. The title says so. Modes have
+        a size of their own.
     title
         In place of the scene's title.
 
@@ -83,7 +88,8 @@ def plot(
     ------
     ValueError
         For a time outside of the run or of a run without time, a probe that the scene has not, a
-        view that is none, or several of modes or of a path.
+        view that is none, or several of modes or of a path, and a scale that is not positive or of
+        modes.
     """
     names = _probe_names(result, probes) if what != "shapes" else []
     kind = result.scenario.analysis
@@ -91,7 +97,12 @@ def plot(
         raise ValueError(f"a {kind} run has no time, and so no shapes at times")
     if what == "probes" and not names:
         raise ValueError("the scene has no probes to plot; add some under output.probes")
-    pictures = [make_picture(result, view) for view in views] if views else [make_picture(result)]
+    if not 0.0 < scale < np.inf:
+        raise ValueError(f"the scale of displacements is a positive number, not {scale!r}")
+    if scale != 1.0 and kind in ("modes", "buckling"):
+        raise ValueError(f"the shapes of a {kind} run have no scale: their size means nothing")
+    wanted: Sequence[str | None] = views or [None]
+    pictures = [make_picture(result, view, scale) for view in wanted]
     if len(pictures) > 1 and kind in ("continuation", "modes", "buckling"):
         raise ValueError(f"a {kind} run is drawn in one view, not in {len(pictures)}")
     frames = [] if result.scenario.is_static else _frames_to_draw(pictures[0], times)
@@ -107,6 +118,8 @@ def plot(
         else:
             figure = _plot_motion(pictures, what, names, frames)
         text = title_of(result) if title is None else title
+        if scale != 1.0 and what != "probes":
+            text += f" (displacements drawn {scale:g} times as large)"
         figure.align_ylabels()
         if kind == "continuation" and what != "shapes":
             lines = wrapped(text, FIGURE_TITLE, _WIDTH - 0.2)
@@ -243,7 +256,7 @@ def _time_label(result: RunData, time: float) -> str:
 
 def _plot_path_shapes(picture: Picture) -> Figure:
     """Draw shapes along a path: coloured by load factor, or by branch where there are several."""
-    positions = picture.result.positions
+    positions = picture.positions
     path = picture.result.path
     if path is None:
         raise ValueError("the run has found no path to draw")

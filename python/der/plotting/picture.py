@@ -37,8 +37,12 @@ class Picture:
     #: Shapes of a motion in one picture.
     instants = 6
 
-    def __init__(self, result: RunData) -> None:
+    def __init__(self, result: RunData, scale: float = 1.0) -> None:
         self.result = result
+        drawn = result.model.initial_positions if scale != 1.0 else 0.0
+        #: Positions of all nodes [m] as they are shown: displacements from the shape as drawn are
+        #: `scale` times as large.
+        self.positions = drawn + scale * (result.positions - drawn)
 
     @property
     def rods(self) -> list[Rod]:
@@ -61,7 +65,7 @@ class Picture:
     def shape(self, frame: int, colour: ColorType, label: str | None = None) -> Shape:
         """Return the shape at a frame of the run."""
         directors = [one if one is None else one[frame % len(one)] for one in self._directors]
-        return Shape(self.result.positions[frame], frame, colour, label, directors)
+        return Shape(self.positions[frame], frame, colour, label, directors)
 
     def loads(self, frame: int) -> ActingLoads:
         """Return the loads at a frame."""

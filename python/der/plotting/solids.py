@@ -74,7 +74,8 @@ def tube(line: Array, directors: Array | None, outline: Array, colours: Array) -
         Corners of the section along directors 1 and 2 [m], shape (sides, 2), counter-clockwise.
         With shape (nodes, sides, 2) it changes along the line.
     colours
-        Of the side from each corner to the next, shape (sides, 3).
+        Of the side from each corner to the next, shape (sides, 3). The ends have that of the side
+        opposite to director 1, so that no stripe runs across them.
     """
     rings = swept(line, directors, outline)
     after = np.roll(rings, -1, axis=1)
@@ -82,10 +83,12 @@ def tube(line: Array, directors: Array | None, outline: Array, colours: Array) -
     corners = [sides.reshape(-1, 4, 3)]
     shades = [np.tile(colours, (len(line) - 1, 1))]
     if not np.array_equal(line[0], line[-1]):
+        first = outline.reshape(-1, *outline.shape[-2:])[0]
+        opposite = int(np.argmin(first[:, 0] + np.roll(first[:, 0], -1)))
         for at, one, two in ((0, after[0], rings[0]), (-1, rings[-1], after[-1])):
             middle = np.broadcast_to(line[at], one.shape)
             corners.append(np.stack([middle, one, two, two], axis=1))
-            shades.append(colours)
+            shades.append(np.tile(colours[opposite], (len(colours), 1)))
     return Faces(np.concatenate(corners), np.concatenate(shades))
 
 

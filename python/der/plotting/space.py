@@ -52,12 +52,12 @@ _SLEEVE = (1.12, 1.75)  # thickness of an actuated stretch against the rod's: of
 class SpatialPicture(Picture):
     """A run in space, in perspective above a floor, or flat along an axis."""
 
-    def __init__(self, result: RunData, view: str) -> None:
-        super().__init__(result)
+    def __init__(self, result: RunData, view: str, scale: float = 1.0) -> None:
+        super().__init__(result, scale)
         if view == "3d":
             self.has_axes, self.instants = False, 4
-        moved = result.positions[-1] + mode_displacements(result)
-        points = np.concatenate([result.positions, moved]).reshape(-1, 3)
+        moved = self.positions[-1] + mode_displacements(result)
+        points = np.concatenate([self.positions, moved]).reshape(-1, 3)
         self.reach = max(float(rod.sphere_radii.max(initial=rod.radius)) for rod in result.rods)
         around = np.vstack([points - self.reach, points + self.reach])
         self.size = max(float(np.ptp(around, axis=0).max()), 1e-300)
@@ -383,8 +383,8 @@ class SpatialPicture(Picture):
             write_beside(axes, far, np.zeros(2), away, text)
 
 
-def make_picture(result: RunData, view: str | None = None) -> Picture:
-    """Return the picture of a run.
+def make_picture(result: RunData, view: str | None = None, scale: float = 1.0) -> Picture:
+    """Return the picture of a run, with displacements `scale` times as large as they are.
 
     Raises
     ------
@@ -392,10 +392,10 @@ def make_picture(result: RunData, view: str | None = None) -> Picture:
         If the view is none: ``3d``, the default in space, or two axes such as ``xz``.
     """
     if result.model.dimension == 3:
-        return SpatialPicture(result, view or "3d")
+        return SpatialPicture(result, view or "3d", scale)
     if view is not None:
         raise ValueError("a planar run is seen in its plane, and in no other view")
-    return Picture(result)
+    return Picture(result, scale)
 
 
 def _upwards(gravity: Array | None) -> Array:

@@ -28,8 +28,8 @@ MUTED = "#6b6b6b"
 #: Loads: forces, moments, gravity.
 LOAD = PALETTE[1]
 
-#: Actuated stretches, one after the other: neither the rod's colour nor that of the loads.
-ACTUATED = (PALETTE[3], PALETTE[4], PALETTE[2], PALETTE[5])
+#: Actuated stretches, one after the other: far from the colours of rods at all times, and of loads.
+ACTUATED = (PALETTE[3], PALETTE[4], "#6F42F5", PALETTE[5])
 
 #: Parts of a result that are not to be trusted.
 WARNING = "#B00020"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Rod, springs
+from der._core import Rod, hinges, springs
 from der.actuated_stretches import ActuatedStretch, actuated_stretches
 from der.characteristic_scales import characteristic_scale
 from der.fields import fields_of
@@ -92,6 +92,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
         ],
         "supports": _supports(result, film.source[frames]),
         "springs": found_springs,
+        "hinges": _hinges(result),
         **loads,
         "actuation": _actuation(result, film.source[frames]),
         "symbol": symbol,
@@ -291,6 +292,16 @@ def _load_symbols(result: RunData, loads: ActingLoads) -> list[dict[str, Any]]:
         for at in np.linspace(part.start, part.end, count):
             found.append(symbol("foundation", part.rod, float(at), down, ""))
     return found
+
+
+def _hinges(result: RunData) -> list[dict[str, int]]:
+    """Return a rod and the place on it of each hinge."""
+    places = {
+        int(node): {"rod": number, "place": place}
+        for number, rod in enumerate(result.rods)
+        for place, node in enumerate(rod.nodes)
+    }
+    return [places[node] for node in hinges(result.scenario)]
 
 
 def _supports(result: RunData, source: NDArray[np.int64]) -> list[dict[str, Any]]:

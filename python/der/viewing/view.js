@@ -10,8 +10,8 @@
   const SPHERE = "#56B4E9";
   const SUPPORT = "#8c8c8c";
   const LOAD = "#D55E00";
-  const ACTUATED = ["#CC79A7", "#E69F00", "#009E73", "#56B4E9"];
-  const NEGATIVE = ["#704361", "#7f5700", "#00573f", "#2f637f"]; // the same, dark
+  const ACTUATED = ["#CC79A7", "#E69F00", "#6F42F5", "#56B4E9"];
+  const NEGATIVE = ["#704361", "#7f5700", "#3d2487", "#2f637f"]; // the same, dark
   const SLEEVE = 0.3; // how far a sleeve is from its rod and from the one within it, in symbols
 
   // Vectors.
@@ -412,6 +412,14 @@
     return { type: "scatter3d", mode: "lines", ...path, ...look };
   };
 
+  // White circles: rods turn freely there.
+  const hinges = (frame) => {
+    const places = data.hinges.map((hinge) => lineOf(rods[hinge.rod], frame)[hinge.place]);
+    const [x, y, z] = [0, 1, 2].map((n) => places.map((place) => place[n]));
+    const marker = { size: 8, color: "white", line: { color: SUPPORT, width: 2 } };
+    return { type: "scatter3d", mode: "markers", x, y, z, marker, hoverinfo: "skip" };
+  };
+
   // Arrows, and what stands beside them. Texts are annotations: Plotly shrinks those of a trace
   // when they change.
   const loads = (frame) => {
@@ -537,7 +545,7 @@
     showLegend(frame);
     const [arrows, labels] = loads(frame);
     const own = [centreLines(frame), tubes(frame), spheres(frame), supports(frame)];
-    return Plotly.react("scene", [...own, arrows, ...sleeves(frame), springs(frame)], layout(labels), config);
+    return Plotly.react("scene", [...own, arrows, ...sleeves(frame), springs(frame), hinges(frame)], layout(labels), config);
   };
 
   // Controls.

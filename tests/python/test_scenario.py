@@ -92,6 +92,14 @@ def test_texts_with_units_are_the_numbers_in_si_units(tube):
         scenario.with_({"rods.beam.nodes": "11 m"})
 
 
+def test_an_empty_text_is_answered_with_what_removes_a_key(tube):
+    scenario = der.Scenario.from_dict(tube)
+    assert "every" in scenario.to_dict()["output"]
+    with pytest.raises(der.SceneError, match="got the text '': to remove the key write nothing"):
+        scenario.with_({"output.every": ""})
+    assert "every" not in scenario.with_({"output.every": None}).to_dict()["output"]
+
+
 def test_every_unit_of_a_key_is_one_that_numbers_can_have():
     """It may stand behind a number, and changes nothing."""
     units = set(re.findall(r"\[([^\[\]]+)\](?: Default:[^\[\]]*)?\"", der.json_schema()))

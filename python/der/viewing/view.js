@@ -414,10 +414,11 @@
 
   // White circles: rods turn freely there.
   const hinges = (frame) => {
+    if (data.hinges.length === 0) return [];
     const places = data.hinges.map((hinge) => lineOf(rods[hinge.rod], frame)[hinge.place]);
     const [x, y, z] = [0, 1, 2].map((n) => places.map((place) => place[n]));
     const marker = { size: 8, color: "white", line: { color: SUPPORT, width: 2 } };
-    return { type: "scatter3d", mode: "markers", x, y, z, marker, hoverinfo: "skip" };
+    return [{ type: "scatter3d", mode: "markers", x, y, z, marker, hoverinfo: "skip" }];
   };
 
   // Arrows, and what stands beside them. Texts are annotations: Plotly shrinks those of a trace
@@ -499,15 +500,16 @@
     nticks: Math.min(7, 2 + Math.ceil(7 * share)), // short axes have room for few
   });
 
+  const NUMBERS = 90; // pixels beside the scene that its numbers take
   const layout = (labels) => {
     const size = data.high.map((value, n) => value - data.low[n]);
     const flat = data.flat;
     // At the distance of the camera about this much of height is seen, and of width by the window.
     const box = element("scene").getBoundingClientRect();
     const seen = flat ? 0.88 : 1.0;
-    const wide = (seen * box.width) / Math.max(box.height, 1);
+    const wide = (seen * Math.max(box.width - NUMBERS, 1)) / Math.max(box.height, 1);
     const zoom = flat
-      ? Math.min((0.82 * wide) / size[0], seen / size[1])
+      ? Math.min((0.87 * wide) / size[0], seen / size[1])
       : Math.min(seen, wide) / Math.max(...size);
     const [x, y, z] = size.map((value) => zoom * value);
     const share = (n) => size[n] / Math.max(...size);
@@ -545,7 +547,7 @@
     showLegend(frame);
     const [arrows, labels] = loads(frame);
     const own = [centreLines(frame), tubes(frame), spheres(frame), supports(frame)];
-    return Plotly.react("scene", [...own, arrows, ...sleeves(frame), springs(frame), hinges(frame)], layout(labels), config);
+    return Plotly.react("scene", [...own, arrows, ...sleeves(frame), springs(frame), ...hinges(frame)], layout(labels), config);
   };
 
   // Controls.

@@ -417,7 +417,7 @@
     if (data.hinges.length === 0) return [];
     const places = data.hinges.map((hinge) => lineOf(rods[hinge.rod], frame)[hinge.place]);
     const [x, y, z] = [0, 1, 2].map((n) => places.map((place) => place[n]));
-    const marker = { size: 8, color: "white", line: { color: SUPPORT, width: 2 } };
+    const marker = { size: 6, color: "white", line: { color: SUPPORT, width: 2 } };
     return [{ type: "scatter3d", mode: "markers", x, y, z, marker, hoverinfo: "skip" }];
   };
 

@@ -94,6 +94,7 @@ class ArcBuilder {
     if (last < 0) return;
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2, last - first + 1);
     for (const auto& [row, place] : {std::pair(&before, 0), {&after, 1}}) {
+      if (row->weights.size() == 0) continue;
       rows.row(place).segment(row->first - first, row->weights.size()) = row->weights;
     }
     Mat2 A = kInner.matrix();

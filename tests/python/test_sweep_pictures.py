@@ -210,4 +210,4 @@ def test_pictures_that_are_refused(tmp_path, capsys):
         assert main(["plot", str(folder), "--probes", column]) == 1
         assert f"the column '{column}' has no numbers to draw" in capsys.readouterr().err
     assert main(["plot", str(folder), "--view", "xz"]) == 1
-    assert "neither times nor views" in capsys.readouterr().err
+    assert "neither times nor shapes" in capsys.readouterr().err

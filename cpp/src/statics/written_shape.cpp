@@ -161,9 +161,8 @@ class WrittenSections {
     std::vector<Index> edges;
     if (!chain.links.front().leaves_clamp()) edges.push_back(chain.first_edge());
     for (const Link& link : chain.links) {
-      if (!link.arrives() && !(chain.is_ring() && &link == &chain.links.back())) {
-        edges.push_back(link.after);
-      }
+      const bool closes_ring = chain.is_ring() && &link == &chain.links.back();
+      if (!link.arrives() && !closes_ring) edges.push_back(link.after);
     }
     const bool held_twice = chain.keeps_twist();
     const bool from_end = chain.end_is_held() && !chain.start_is_held();

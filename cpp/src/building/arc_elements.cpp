@@ -89,7 +89,7 @@ class ArcBuilder {
     for (const CurvatureRow* row : {&before, &after}) {
       if (row->weights.size() == 0) continue;
       first = std::min(first, row->first);
-      last = std::max<Index>(last, row->first + row->weights.size() - 1);
+      last = std::max(last, row->first + static_cast<Index>(row->weights.size()) - 1);
     }
     if (last < 0) return;
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2, last - first + 1);

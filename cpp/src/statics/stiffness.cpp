@@ -281,7 +281,7 @@ Stiffness::SoftSpace Stiffness::rayleigh_ritz(const Eigen::MatrixXd& basis, Inde
     return second_variations(model_, here_, full);
   };
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(variations(directions).values);
-  std::vector<Index> order(to_size(basis.cols()));
+  std::vector<Index> order(static_cast<std::size_t>(basis.cols()));
   std::iota(order.begin(), order.end(), Index{0});
   if (nearest) {
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {

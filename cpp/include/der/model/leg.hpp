@@ -36,7 +36,7 @@ struct Leg {
   Index start_cell = -1;  ///< the end cell at its start; where one has both ends, it is this
   Index end_cell = -1;
   Index first_bend = -1;  ///< the bends at nodes between end cells follow one another
-  std::vector<LegArc> arcs;
+  std::vector<LegArc> arcs{};
   [[nodiscard]] Index num_cells() const { return last - first; }
   /// Whether the end cell of a joint has the bending at a node: it is next to the joint.
   [[nodiscard]] bool in_end_cell(Index place) const {

@@ -18,8 +18,8 @@ _ELSEWHERE = "name a folder where you may write, or change its permissions"
 def written_whole(path: Path) -> Iterator[Path]:
     """Give the path to write a file to, which gets its name `path` at the end of a ``with`` block.
 
-    What an error or a signal leaves half-written never has the name of a result. Devices, and files
-    of a folder that takes no others, are written in place.
+    A file that an error or a signal leaves half-written never has the name of a result. Devices,
+    and files of a folder that takes no others, are written in place.
 
     Parameters
     ----------

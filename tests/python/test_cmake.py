@@ -1,4 +1,4 @@
-"""What a build says before it compiles anything."""
+"""Messages of a build before it compiles anything."""
 
 import shutil
 import subprocess

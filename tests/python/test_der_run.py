@@ -879,7 +879,7 @@ def test_what_was_not_tested_is_said_when_asked_for(tmp_path: Path) -> None:
     line = "  plane    not tested out of it, because "
     assert [text for text in verbose.splitlines() if text.startswith(line)]
     assert der_run(scene, "--verbose", "--quiet", "--out", tmp_path / "out").returncode == 2
-    # What was tested is said always: this force does not turn with the rod.
+    # A test that was done is always reported: this force does not turn with the rod.
     force = ["--set", "loads=[{point_force: {rod: rod, at: end, force: [0, -1]}}]"]
     force += ["--set", "rods.rod.material.poissons_ratio=0.3"]
     tested = der_run(scene, *force, "--out", tmp_path / "out").stdout

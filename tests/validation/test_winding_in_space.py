@@ -323,7 +323,7 @@ def random_scene(seed) -> Scene:
 @pytest.mark.filterwarnings("ignore:.*too coarse for the twist")
 @pytest.mark.parametrize("hundred", range(4))
 def test_random_equilibria_that_a_program_writes_are_kept(hundred):
-    """Of sections that can rest in several ways the one is found that leaves the nodes at rest."""
+    """Where sections can rest in several ways, those are found that leave the nodes at rest."""
     kept = 0
     for seed in range(100 * hundred, 100 * hundred + 40):
         scene = random_scene(seed)

@@ -16,7 +16,7 @@
 namespace der {
 namespace {
 
-/// Of angles and lengths that are drawn, by which a leg still counts as straight and even.
+/// A leg counts as straight and even up to this relative difference of its angles and lengths.
 constexpr double kDrawnRounding = 1e-9;
 
 /// An edge of unit length with the curvatures k = (k_a, k_b) at its two nodes has an arc that is

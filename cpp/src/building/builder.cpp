@@ -328,10 +328,6 @@ void hold_dofs(Model& model) {
 }  // namespace
 
 Model build_model(const scenario::Scene& scene, LegOrder order) {
-  // Its discrete gradients do not know the arcs beside joints.
-  if (scene.is_dynamic() && scene.time.integrator == "energy_momentum") {
-    order = LegOrder::Second;
-  }
   Model model;
   model.elements = make_hidden<ElementLists>();
   const bool with_sections = choose_model(scene, model);

@@ -35,9 +35,9 @@ class ArcReader {
     });
   }
 
-  /// [N] In an edge of the leg.
-  [[nodiscard]] double tension(Index edge, const Model& model, const State& state) const {
-    return edge == arc_.edge ? loads_(model, state).front() : 0.0;
+  /// [N] In its edge.
+  [[nodiscard]] double tension(const Model& model, const State& state) const {
+    return loads_(model, state).front();
   }
   /// [N m] At a node of the leg.
   [[nodiscard]] double moment(Index node, const Model& model, const State& state) const {
@@ -144,14 +144,15 @@ class LegReader {
           model, state);
       for (Index k = 1; k < node; ++k) edge += turn(k, model, state);
     }
-    if (node == 0) return edge - lean(start_, 1, model, state);
-    if (node == last) return edge - lean(end_, last - 1, model, state);
-    const double before = edge + lean_in_middle(node - 1, model, state);
-    const double after = edge + turn(node, model, state) + lean_in_middle(node, model, state);
-    const double share = length(node) / (length(node - 1) + length(node));
-    const double between = share * before + (1.0 - share) * after;
-    if (leg_.arcs.empty()) return between;
-    return between - (bend(node + 1, model, state) - bend(node - 1, model, state)) / 24.0;
+    return slope_beside(edge, node, model, state);
+  }
+
+  /// The slope but for whole turns: the edge beside the node tells it.
+  [[nodiscard]] double tangent_angle(Index node, const Model& model, const State& state) const {
+    if (node == 0 && leg_.start.rotation >= 0) return slope_of(leg_.start, model, state);
+    if (node == leg_.num_cells() && leg_.end.rotation >= 0) return slope_of(leg_.end, model, state);
+    const Vec2 edge = vector(std::max<Index>(node - 1, 0), model, state);
+    return slope_beside(std::atan2(edge.y(), edge.x()), node, model, state);
   }
 
   /// The force [N] that the rod behind a node exerts on the rod before it: linear through the
@@ -171,7 +172,7 @@ class LegReader {
   }
   /// Its component along the tangent [N].
   [[nodiscard]] double tension(Index node, const Model& model, const State& state) const {
-    const double angle = slope(node, model, state);
+    const double angle = tangent_angle(node, model, state);
     return force(node, model, state).dot(Vec2{std::cos(angle), std::sin(angle)});
   }
 
@@ -183,10 +184,29 @@ class LegReader {
     Vec3 lengths = Vec3::Zero();  ///< by the curvature at the nodes from the end on [m]
   };
 
+  /// The slope at a node that has no joint. `edge`: the direction of the edge before it, or of the
+  /// first one [rad].
+  [[nodiscard]] double slope_beside(double edge, Index node, const Model& model,
+                                    const State& state) const {
+    const Index last = leg_.num_cells();
+    if (node == 0) return edge - lean(start_, 1, model, state);
+    if (node == last) return edge - lean(end_, last - 1, model, state);
+    const double before = edge + lean_in_middle(node - 1, model, state);
+    const double after = edge + turn(node, model, state) + lean_in_middle(node, model, state);
+    const double share = length(node) / (length(node - 1) + length(node));
+    const double between = share * before + (1.0 - share) * after;
+    if (leg_.arcs.empty()) return between;
+    return between - (bend(node + 1, model, state) - bend(node - 1, model, state)) / 24.0;
+  }
+
   /// The moment [N m] that the elements transmit at a node.
   [[nodiscard]] double transmitted(Index node, const Model& model, const State& state) const {
     double sum = moments_[to_size(node)](model, state);
-    for (const ArcReader& arc : arcs_) sum += arc.moment(node, model, state);
+    // An arc sees the nodes of its edge, and one more on either side.
+    const Index last = std::min(node + 2, static_cast<Index>(arcs_.size()));
+    for (Index edge = std::max<Index>(node - 2, 0); edge < last; ++edge) {
+      sum += arcs_[to_size(edge)].moment(node, model, state);
+    }
     return sum;
   }
   /// The curvature at a node times the length of a cell, as the bending energy has it [-].
@@ -326,7 +346,7 @@ class LegReader {
     const double extension =
         now - length(edge) - elongations_[to_size(edge)].value(0, model, state);
     double tension = rod_.EA * extension / length(edge);
-    for (const ArcReader& arc : arcs_) tension += arc.tension(edge, model, state);
+    if (!arcs_.empty()) tension += arcs_[to_size(edge)].tension(model, state);
     const double shear =
         (transmitted(edge, model, state) - transmitted(edge + 1, model, state)) / now;
     return (tension * along + shear * perpendicular(along)) / now;
@@ -335,8 +355,8 @@ class LegReader {
   Leg leg_;
   RodMesh rod_;
   ActuatedShape actuated_;
-  std::vector<MomentReader> moments_;  // of each node, by its bending energy
-  std::vector<ArcReader> arcs_;
+  std::vector<MomentReader> moments_;      // of each node, by its bending energy
+  std::vector<ArcReader> arcs_;            // of each edge, or none
   std::vector<ActuatedRest> elongations_;  // [m] of each edge
   std::vector<double> drawn_;              // curvature of each node [1/m]
   std::vector<double> natural_;            // likewise, without stress
@@ -367,7 +387,7 @@ class LegPlaceField : public RodField {
     const double at_node = state.positions[dofs_[i]];
     const auto& [leg, node] = legs_of_[i];
     if (leg == nullptr) return at_node;
-    const double angle = leg->slope(node, model, state);
+    const double angle = leg->tangent_angle(node, model, state);
     return at_node +
            leg->beside(node, model, state) * (component_ == 0 ? -std::sin(angle) : std::cos(angle));
   }

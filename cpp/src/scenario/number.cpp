@@ -206,7 +206,7 @@ std::optional<double> in_si(const InUnit& written) {
 constexpr const char* kOutOfRange =
     "it is out of the range of double-precision numbers (1e-308 to 1.8e308)";
 
-/// What to write in place of an unknown unit, or one of another kind than that of the key.
+/// Tells what to write in place of an unknown unit, or of one of another kind than the key's.
 std::string unit_clause(std::string_view written, std::string_view unit) {
   if (unit.empty()) return "write the number alone, without a unit";
   return fmt::format("'{}' is not a unit of this kind: write the number in {}", written, unit);

@@ -97,7 +97,7 @@ stress. At the node of a jump a list has the mean of the cell there: of edges of
 the sum of both sides. `natural_twist` is a number, or a list of one for each node.
 )";
 
-/// What one writes of a table, as lines of a scene.
+/// An example of a table, as lines of a scene.
 struct Example {
   std::string_view table;
   std::string_view lines;

@@ -74,7 +74,7 @@ def tube(line: Array, directors: Array | None, outline: Array, colours: Array) -
         Corners of the section along directors 1 and 2 [m], shape (sides, 2), counter-clockwise.
         With shape (nodes, sides, 2) it changes along the line.
     colours
-        Of the side from each corner to the next, shape (sides, 3). The ends have that of the side
+        For the side from each corner to the next, shape (sides, 3). The ends have that of the side
         opposite to director 1, so that no stripe runs across them.
     """
     rings = swept(line, directors, outline)

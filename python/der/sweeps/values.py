@@ -57,7 +57,7 @@ class Range:
     log
         Whether equal shares of it are equal ratios.
     unit
-        Of both ends; empty for the unit of the key.
+        The unit of both ends; empty for the unit of the key.
 
     Raises
     ------

@@ -8,7 +8,7 @@ namespace scenario {
 struct Scene;
 }
 
-/// Of the error of legs in the length of their cells, where a leg can have it.
+/// The order at which the error of a leg falls with the length of its cells, where it can.
 enum class LegOrder { Second, Fourth };
 
 /// Turns a validated scene into a model: chooses the smallest model that can represent it, numbers

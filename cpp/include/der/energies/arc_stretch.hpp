@@ -13,7 +13,7 @@
 
 namespace der {
 
-/// What the stretching energy of an edge lacks because the edge is not as long as the arc between
+/// The correction of an edge's stretching energy: the edge is not as long as the arc between
 /// its nodes, in a plane. A node inside a leg lies l^2/12 of the curvature beside the curve, a
 /// joint on it, so that the arc has the length |e| (1 - g) with a quadratic form g = phi' G phi of
 /// the turning angles phi next to the edge:

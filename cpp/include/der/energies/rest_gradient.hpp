@@ -28,34 +28,34 @@ struct RestGradient {
   static constexpr bool kExists = false;
 };
 
-template <int Dim>
-struct RestGradient<Stretch<Dim>> {
-  using Kernel = Stretch<Dim>;
+/// Elements that stretch have one elongation.
+template <class Kernel>
+struct StretchingRestGradient {
   static constexpr bool kExists = true;
   static constexpr int kSize = 1;
   static const NaturalStrainOffset& shift(const typename Kernel::Constants& c) {
     return c.elongation;
   }
-  static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
-                                            const Configuration& here,
-                                            const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
+};
+
+template <int Dim>
+struct RestGradient<Stretch<Dim>> : StretchingRestGradient<Stretch<Dim>> {
+  using Kernel = Stretch<Dim>;
+  static Eigen::Matrix<double, 1, 1> of(const typename Kernel::Constants& c,
+                                        const Configuration& here,
+                                        const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
     const double length = Kernel::edge(x).norm();
-    return Eigen::Matrix<double, kSize, 1>(-Kernel::response(c, here.controls, length).tension);
+    return Eigen::Matrix<double, 1, 1>(-Kernel::response(c, here.controls, length).tension);
   }
 };
 
 template <int Edges, int Joints>
-struct RestGradient<ArcStretch<Edges, Joints>> {
+struct RestGradient<ArcStretch<Edges, Joints>> : StretchingRestGradient<ArcStretch<Edges, Joints>> {
   using Kernel = ArcStretch<Edges, Joints>;
-  static constexpr bool kExists = true;
-  static constexpr int kSize = 1;
-  static const NaturalStrainOffset& shift(const typename Kernel::Constants& c) {
-    return c.elongation;
-  }
-  static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
-                                            const Configuration& here,
-                                            const typename Kernel::Coordinates& x) {
-    return Eigen::Matrix<double, kSize, 1>(
+  static Eigen::Matrix<double, 1, 1> of(const typename Kernel::Constants& c,
+                                        const Configuration& here,
+                                        const typename Kernel::Coordinates& x) {
+    return Eigen::Matrix<double, 1, 1>(
         Kernel::by_elongation(c, c.elongation.value(here.controls), x));
   }
 };

@@ -179,7 +179,7 @@ def test_beside_a_clamp(name, edges, fitted_order):
     assert worst[-1].max() < 1e-4
     for place, column in zip(places(sizes[-1]), worst.T, strict=True):
         assert fitted_order([1 / n for n in sizes], column) > 1.9, (place, column)
-    # Up to the moment there is one middle of an edge at most: no slope (docs/results.md).
+    # Up to the moment there is one middle of an edge at most: no slope (docs/limits.md).
     assert tension[-1].max() < 1e-2
 
 

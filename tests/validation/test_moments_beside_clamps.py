@@ -91,7 +91,7 @@ def test_a_bent_rod(fitted_order, edges, end):
     for name, column in zip(truth, np.array(errors).T, strict=True):
         if name.startswith("tension"):
             # Between the clamp and the moment there is one middle of an edge at most: the tension
-            # has no slope there (docs/results.md).
+            # has no slope there (docs/limits.md).
             assert column[-1] < 0.03, name
         else:
             assert column[-1] < 1e-4, name

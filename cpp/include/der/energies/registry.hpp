@@ -20,6 +20,7 @@
 #include "der/energies/rotational_spring.hpp"
 #include "der/energies/section_spring.hpp"
 #include "der/energies/spatial_bend.hpp"
+#include "der/energies/spatial_end_cell.hpp"
 #include "der/energies/stretch.hpp"
 
 namespace der {
@@ -60,6 +61,14 @@ struct ElementLists {
       ElementList<FromSpatialPivot<CornerBend>>,                        //
       ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
       ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
+      ElementList<SpatialEndCell<AngleCurvature, 1, 1>>,    //
+      ElementList<SpatialEndCell<TangentCurvature, 1, 1>>,  //
+      ElementList<SpatialEndCell<AngleCurvature, 2, 1>>,    //
+      ElementList<SpatialEndCell<TangentCurvature, 2, 1>>,  //
+      ElementList<SpatialEndCell<AngleCurvature, 1, 2>>,    //
+      ElementList<SpatialEndCell<TangentCurvature, 1, 2>>,  //
+      ElementList<SpatialEndCell<AngleCurvature, 2, 2>>,    //
+      ElementList<SpatialEndCell<TangentCurvature, 2, 2>>,  //
       ElementList<FromSpatialPivot<Fork>>,                              //
       ElementList<FromSpatialPivot<CornerFork>>,                        //
       ElementList<PlanarMoment>,                                        //

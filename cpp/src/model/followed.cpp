@@ -56,9 +56,8 @@ Index turned_too_far(const Model& model, const Vector& coordinates, const Vector
     }
   }
   if (model.framed_edges.empty()) return -1;
-  const Index edge = frame_turned_too_far(model, coordinates, controls,
-                                          followed.tail(model.initial_frames.size()));
-  return edge < 0 ? -1 : model.framed_edges[to_size(edge)].end;
+  return frame_turned_too_far(model, coordinates, controls,
+                              followed.tail(model.initial_frames.size()));
 }
 
 }  // namespace der

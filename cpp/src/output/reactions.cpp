@@ -255,7 +255,9 @@ void Reactions::Reader::choose_elements(const Model& model) {
   std::vector<bool> read(to_size(model.num_dofs()), false);
   for (const Place& place : places_) {
     for (const HeldDof& held : place.held) read[to_size(held.dof)] = true;
-    if (place.rotation >= 0) read[to_size(place.rotation)] = true;
+    for (Index c = 0; place.rotation >= 0 && c < (model.dimension == 3 ? 3 : 1); ++c) {
+      read[to_size(place.rotation + c)] = true;
+    }
   }
   elements_ = ActingElements(model, [&](Index dof) { return read[to_size(dof)]; });
 }
@@ -466,6 +468,8 @@ const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, con
       reaction.moment = moments_[first_clamps_[place.rod] + to_size(place.clamp)];
     if (place.rotational_stiffness > 0.0) {
       reaction.moment.z() = -place.rotational_stiffness * state.positions[place.rotation];
+    } else if (place.rotation >= 0 && model.dimension == 3) {
+      reaction.moment = gradient_.segment<3>(place.rotation) - force_.segment<3>(place.rotation);
     } else if (place.rotation >= 0) {
       reaction.moment.z() = gradient_[place.rotation] - force_[place.rotation];
     }

@@ -147,13 +147,12 @@ class JointedSceneCheck {
 
   void run() {
     const SceneText& scene = context_.scene;
-    if (context_.diagnostics.dimension() == 3) {
-      report({"joints"},
-             "joints are in scenes of two components: write the points and vectors of "
-             "the scene with x and y alone");
-    }
-    if (scene.model == ModelChoice::Spatial || scene.model == ModelChoice::SpatialBend) {
-      lacks({"model"}, "a model in space");
+    const bool in_space = context_.diagnostics.dimension() == 3;
+    if (in_space) check_in_space();
+    const ModelChoice needed = in_space ? ModelChoice::Spatial : ModelChoice::Planar;
+    if (scene.model != ModelChoice::Auto && scene.model != needed) {
+      lacks({"model"}, fmt::format("'{}' with {} components", name_of(scene.model),
+                                   in_space ? "three" : "two"));
     }
     for (int i = 0; i < static_cast<int>(scene.rods.size()); ++i) {
       check_rod(scene.rods[static_cast<std::size_t>(i)], {"rods", i});
@@ -211,6 +210,31 @@ class JointedSceneCheck {
     context_.nodes_at(rod->second, at, path, true);
   }
 
+  /// Reports what joints in space lack besides.
+  void check_in_space() {
+    const SceneText& scene = context_.scene;
+    for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i) {
+      const Joint& joint = scene.joints[static_cast<std::size_t>(i)];
+      if (joint.kind != JointKind::Rigid) lacks(joint_path(i) / "kind", "a hinge in space");
+    }
+    for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
+      const Support& support = scene.supports[static_cast<std::size_t>(i)];
+      const Path path{"supports", i};
+      if (support.clamp == Clamp::Tangent) lacks(path / "clamp", "'clamp: tangent' in space");
+      if (support.axis_rotation && support.twist) {
+        lacks(path / "prescribe", "a clamp in space with a 'rotation' and a 'twist'");
+      }
+      if (support.spring && !support.spring->rotational_stiffness.empty()) {
+        lacks(path / "spring" / "rotational_stiffness", "springs against rotation in space");
+      }
+    }
+    if (!scene.actuations.empty()) lacks({"actuation"}, "actuations in space");
+    if (scene.is_dynamic()) {
+      lacks({"time"}, "runs over time in space");
+    } else if (!std::holds_alternative<StaticAnalysis>(scene.analysis)) {
+      lacks({"analysis"}, "this analysis in space");
+    }
+  }
   void check_rod(const Rod& rod, const Path& path) {
     if (rod.closed) lacks(path / "closed", "a closed rod");
     if (damping_of(rod).any()) lacks(path, "internal damping");

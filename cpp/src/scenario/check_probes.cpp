@@ -121,7 +121,7 @@ class ProbeCheck {
     }
     const Joint* joint = find_joint(context_, *probe_.joint, path_ / "joint");
     if (joint == nullptr) return;
-    if (quantity == JointQuantity::Rotation) {
+    if (is_rotation(quantity)) {
       if (joint->kind == JointKind::Rigid) return;
       report(path_ / "quantity",
              fmt::format("each rod has its own rotation in hinge '{}': take the 'slope' of a rod "

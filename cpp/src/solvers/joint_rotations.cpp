@@ -24,7 +24,7 @@ template <class Use>
 void JointRotations::for_each_element(const Use& use) const {
   for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    if constexpr (NumJoints<Kernel>::value > 0) {
+    if constexpr (NumJoints<Kernel>::value > 0 && NumJoints<Kernel>::value < 3) {
       for (std::size_t e = 0; e < list.size(); ++e) {
         std::array<Index, 2> rotations{-1, -1};
         for (int i = 0; i < Kernel::kJoints; ++i) {
@@ -43,6 +43,10 @@ Index JointRotations::number_of(Index dof) const {
 
 JointRotations::JointRotations(const Model& model) : model_(model) {
   const DofMap& dofs = model.dofs;
+  if (model.dimension == 3 && model.has_rotations()) {
+    in_space_ = std::make_unique<SpatialJointRotations>(model);
+    return;
+  }
   for (Index i = 0; i < dofs.num_rotations(); ++i) {
     const bool is_free = dofs.is_free(dofs.rotation(i));
     number_.push_back(is_free ? static_cast<Index>(free_.size()) : -1);
@@ -115,6 +119,7 @@ void JointRotations::solve() {
 double JointRotations::settle(const Vector& controls, const Vector& extra_force,
                               Vector& coordinates) {
   constexpr int kMost = 20;
+  if (in_space_) return in_space_->settle(controls, extra_force, coordinates);
   double work = 0.0;
   if (free_.empty()) return work;
   here_.controls = controls;

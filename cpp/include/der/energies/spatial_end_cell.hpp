@@ -17,12 +17,6 @@
 
 namespace der {
 
-/// The section of a leg at a joint, which turns with the joint.
-struct JointSection {
-  SectionFrame drawn;
-  JointBlock joint;
-};
-
 /// Bending and twist of a leg in space next to joints: EndCell with three strains in each cell.
 /// Each bending couples with its own in the other cells,
 ///   E = 1/2 sum_k EI_k s_k' C^-1 s_k + 1/2 sum_i GJ/l_i t_i^2,
@@ -133,10 +127,8 @@ struct SpatialEndCell {
         all[std::size_t(c.frame_of_edge(i))] = edges[std::size_t(i)].frame;
       }
       for (int i = 0; i < Joints; ++i) {
-        const SectionFrame& drawn = c.joints[std::size_t(i)].drawn;
-        const Mat3& R = joints[std::size_t(i)].rotation();
         all[std::size_t(c.frame_of_joint(i))] =
-            SectionFrame::of(R * drawn.tangent, R * drawn.first);
+            joints[std::size_t(i)].section(c.joints[std::size_t(i)].drawn);
       }
       return all;
     }

@@ -5,6 +5,7 @@
 
 #include "der/core/types.hpp"
 #include "der/kinematics/cross_matrix.hpp"
+#include "der/kinematics/section_frame.hpp"
 
 namespace der {
 
@@ -25,6 +26,12 @@ struct JointBlock {
   }
 };
 
+/// The section of a leg at a joint, which turns with the joint.
+struct JointSection {
+  SectionFrame drawn;
+  JointBlock joint;
+};
+
 /// The rotation that the vector `delta` stands for.
 inline Eigen::Quaterniond rotation_by(const Vec3& delta) {
   const double angle = delta.norm();
@@ -36,6 +43,14 @@ inline Eigen::Quaterniond rotation_by(const Vec3& delta) {
   return turn;
 }
 
+/// The vector of a rotation [rad], of up to half a turn.
+inline Vec3 rotation_vector(const Eigen::Quaterniond& turn) {
+  const double sign = turn.w() < 0.0 ? -1.0 : 1.0;
+  const double sine = turn.vec().norm();
+  if (sine == 0.0) return Vec3::Zero();
+  return sign * 2.0 * std::atan2(sine, sign * turn.w()) / sine * turn.vec();
+}
+
 /// The rotation of a joint in space as a function of its three coordinates w: R = exp([d]x) R0 with
 /// d = w - w0, where w0 and R0 belong to the start of the step (JointBlock). So the coordinates
 /// have no singular place as long as a step turns by less than a whole turn.
@@ -44,7 +59,8 @@ inline Eigen::Quaterniond rotation_by(const Vec3& delta) {
 /// a = (1 - cos |d|)/|d|^2 and b = (|d| - sin |d|)/|d|^3.
 class JointTurn {
  public:
-  JointTurn(const JointBlock& block, const Vector& controls, const Vec3& w)
+  template <class Values>
+  JointTurn(const JointBlock& block, const Values& controls, const Vec3& w)
       : JointTurn(w - block.coordinates(controls), block.rotation(controls)) {}
   JointTurn(const Vec3& delta, const Eigen::Quaterniond& base)
       : delta_(delta), rotation_((rotation_by(delta) * base).toRotationMatrix()) {
@@ -66,6 +82,10 @@ class JointTurn {
   [[nodiscard]] const Vec3& delta() const { return delta_; }
   /// R, from the initial shape.
   [[nodiscard]] const Mat3& rotation() const { return rotation_; }
+  /// A section that turns with the joint.
+  [[nodiscard]] SectionFrame section(const SectionFrame& drawn) const {
+    return SectionFrame::of(rotation_ * drawn.tangent, rotation_ * drawn.first);
+  }
   /// T.
   [[nodiscard]] Mat3 spin() const {
     const Mat3 cross = cross_matrix<double>(delta_);

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
+#include "der/solvers/spatial_joint_rotations.hpp"
 
 namespace der {
 
@@ -34,6 +36,7 @@ class JointRotations {
   void solve();
 
   const Model& model_;
+  std::unique_ptr<SpatialJointRotations> in_space_;  // null: in a plane
   std::vector<Index> free_;                       // degrees of freedom
   std::vector<Index> number_;                     // of each rotation among these; -1: held
   std::vector<ControlledForce> moments_;          // on these

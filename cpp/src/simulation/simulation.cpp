@@ -158,6 +158,7 @@ void Simulation::settle_rotations() {
   Vector controls;
   evaluate_controls(model_, state_, state_.time, controls);
   JointRotations(model_).settle(controls, state_.extra_force, state_.positions);
+  if (model_.has_sections()) der::follow(model_, state_);
 }
 
 std::string Simulation::find_nonfinite() const {

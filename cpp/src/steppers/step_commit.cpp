@@ -64,6 +64,7 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
 void StepCommit::settle_rotations(double dt, State& state) {
   if (!model_.has_rotations()) return;
   state.work.loads += rotations_.settle(end_.controls, state.extra_force, state.positions);
+  if (model_.has_sections()) follow(model_, state.positions, end_.controls, state.followed);
   for (Index i = 0; i < model_.dofs.num_rotations(); ++i) {
     const Index dof = model_.dofs.rotation(i);
     if (!model_.dofs.is_free(dof)) continue;

@@ -1,0 +1,299 @@
+"""Networks of rods in space that joints join, against `references/spatial_networks.py`.
+
+Meshes are nested: the lengths of legs are in ratios of whole numbers, so that twice the edges of
+each rod are twice the cells of each leg.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import der
+import numpy as np
+import pytest
+from references.spatial_networks import Scene, SpatialNetwork
+
+FINENESS = [1, 2, 4]
+FIELDS = ["x", "y", "z", "tx", "ty", "tz", "moment_1", "moment_2", "torque", "tension"]
+REACTIONS = [f"reaction_{c}" for c in ("x", "y", "z", "moment_x", "moment_y", "moment_z")]
+EXERTED = ["force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"]
+ROTATION = ["rotation_x", "rotation_y", "rotation_z"]
+SECTION = {"EA": 2e3, "EI1": 1.0, "EI2": 0.4, "GJ": 0.5, "mass_per_length": 1.0}
+
+
+def rod(name: str, start: list[float], end: list[float], edges: int, **more: Any) -> Scene:
+    section = SECTION | more.pop("stiffness", {})
+    line: Scene = {"name": name, "from": start, "to": end, "nodes": edges + 1}
+    return line | {"cross_section": {"stiffness": section}} | more
+
+
+def arc(name: str, radius: float, angle: float, start: list[float], edges: int) -> Scene:
+    """A part of a circle about an axis along y, that leaves `start` along x."""
+    along = np.linspace(0, angle, edges + 1)
+    points = np.array(start) + radius * np.column_stack(
+        [np.sin(along), np.zeros(edges + 1), 1 - np.cos(along)]
+    )
+    line: Scene = {"name": name, "points": points.tolist(), "director": [0, 1, 0]}
+    return line | {"cross_section": {"stiffness": SECTION}}
+
+
+def at(name: str, place: Any, **more: Any) -> Scene:
+    return {"rod": name, "at": place, **more}
+
+
+def joint(name: str, *members: Scene) -> Scene:
+    return {"name": name, "of": list(members)}
+
+
+def force(name: str, place: Any, *components: float, **more: Any) -> Scene:
+    return {"point_force": at(name, place, force=list(components), **more)}
+
+
+def moment(name: str, place: Any, *components: float, **more: Any) -> Scene:
+    return {"moment": at(name, place, moment=list(components), **more)}
+
+
+def clamp(name: str, place: Any, **more: Any) -> Scene:
+    return at(name, place, clamp=True, **more)
+
+
+def pin(name: str, place: Any, **more: Any) -> Scene:
+    return at(name, place, fix=["x", "y", "z"], **more)
+
+
+def scene_of(
+    rods: list[Scene], joints: list[Scene], supports: list[Scene], loads: list[Scene]
+) -> Scene:
+    return {"rods": rods, "joints": joints, "supports": supports, "loads": loads}
+
+
+# Scenes: functions of a fineness.
+
+
+def frame(n: int) -> Scene:
+    """An L that is bent out of its plane."""
+    return scene_of(
+        [rod("a", [0, 0, 0], [1, 0, 0], 10 * n), rod("b", [1, 0, 0], [1, 0.8, 0], 8 * n)],
+        [joint("corner", at("a", "end"), at("b", "start"))],
+        [clamp("a", "start")],
+        [force("b", "end", 0.3, -0.2, 1.2), moment("a", "end", 0.2, -0.3, 0.1)],
+    )
+
+
+def portal(n: int) -> Scene:
+    """Two posts and a beam out of their plane's normal, with loads in all directions."""
+    upright = {"director": [0, 1, 0]}
+    return scene_of(
+        [
+            rod("left", [0, 0, 0], [0, 0, 1], 10 * n, **upright),
+            rod("beam", [0, 0, 1], [1.2, 0.9, 1], 15 * n),
+            rod("right", [1.2, 0.9, 0], [1.2, 0.9, 1], 10 * n, **upright),
+        ],
+        [
+            joint("nw", at("left", "end"), at("beam", "start")),
+            joint("ne", at("right", "end"), at("beam", "end")),
+        ],
+        [clamp("left", "start"), pin("right", "start")],
+        [
+            force("left", "end", 0.6, -0.4, 0),
+            {"distributed_force": {"rod": "beam", "force": [0.2, 0.2, -0.8]}},
+            moment("beam", 0.6, 0.3, -0.2, 0.4),
+        ],
+    )
+
+
+def star(n: int) -> Scene:
+    """Three arms that are in no plane, with a moment where they meet."""
+    return scene_of(
+        [
+            rod("a", [-0.8, 0, -0.1], [0, 0, 0], 8 * n),
+            rod("b", [0, 0, 0], [0.5, 0.7, 0.2], 9 * n),
+            rod("c", [0.4, -0.6, -0.3], [0, 0, 0], 8 * n, stiffness={"EI1": 0.7}),
+        ],
+        [joint("middle", at("a", "end"), at("b", "start"), at("c", "end"))],
+        [clamp("a", "start"), pin("b", "end"), clamp("c", "start")],
+        [moment("a", "end", 2.4, 1.8, -1.6), force("b", "start", 0, 1, -2)],
+    )
+
+
+def tee(n: int) -> Scene:
+    """A beam that runs through on a post, and a spring to an anchor."""
+    return scene_of(
+        [
+            rod("beam", [0, 0, 0], [1, 0, 0], 10 * n),
+            rod("post", [0.4, 0.3, -0.4], [0.4, 0, 0], 5 * n),
+        ],
+        [joint("tee", at("beam", 0.4), at("post", "end"))],
+        [clamp("post", "start"), at("beam", "start", spring={"stiffness": [2, 3, 4]})],
+        [force("beam", "end", 0.3, 1.5, -1), force("beam", 0.7, 0, 0, 1)],
+    )
+
+
+def loop(n: int) -> Scene:
+    """A closed frame that is in no plane."""
+    corners = {
+        "p": [0.0, 0.0, 0.0],
+        "q": [1.0, 0.0, 0.1],
+        "r": [1.0, 0.8, -0.1],
+        "s": [0.0, 0.8, 0.2],
+    }
+
+    def bar(name: str, a: str, b: str, edges: int) -> Scene:
+        return rod(name, corners[a], corners[b], edges)
+
+    return scene_of(
+        [
+            bar("pq", "p", "q", 10 * n),
+            bar("qr", "q", "r", 8 * n),
+            bar("rs", "r", "s", 10 * n),
+            bar("sp", "s", "p", 8 * n),
+        ],
+        [
+            joint("p", at("pq", "start"), at("sp", "end")),
+            joint("q", at("pq", "end"), at("qr", "start")),
+            joint("r", at("qr", "end"), at("rs", "start")),
+            joint("s", at("rs", "end"), at("sp", "start")),
+        ],
+        [clamp("pq", "start")],
+        [force("rs", "start", 0.4, -0.2, 1.0), moment("sp", "start", 0.3, 0.5, -0.2)],
+    )
+
+
+def curved(n: int) -> Scene:
+    """An arc that is free of stress as drawn, and a straight rod out of its plane."""
+    return scene_of(
+        [
+            arc("bow", 0.8, 1.2, [0, 0, 0], 12 * n),
+            rod(
+                "arm",
+                (0.8 * np.array([np.sin(1.2), 0, 1 - np.cos(1.2)])).tolist(),
+                (0.8 * np.array([np.sin(1.2), 0.75, 1 - np.cos(1.2)])).tolist(),
+                8 * n,
+            ),
+        ],
+        [joint("tip", at("bow", "end"), at("arm", "start"))],
+        [clamp("bow", "start")],
+        [force("arm", "end", -0.4, 0.1, 0.8)],
+    )
+
+
+def natural(n: int) -> Scene:
+    """Natural curvatures that differ from rod to rod, and weight."""
+    return scene_of(
+        [
+            rod("a", [0, 0, 0], [0.6, 0, 0], 6 * n, natural_curvature=[0.8, -0.5]),
+            rod("b", [0.6, 0, 0], [0.6, 0.5, 0.3], 6 * n, natural_curvature=[-1.0, 1.2]),
+        ],
+        [joint("ab", at("a", "end"), at("b", "start"))],
+        [clamp("a", "start")],
+        [{"gravity": [0, 0, -1.5]}, force("b", "end", 0.2, 0.1, 0)],
+    )
+
+
+def moved(n: int) -> Scene:
+    """Supports that move and turn, and a rod with a short leg."""
+    return scene_of(
+        [
+            rod("a", [0, 0, 0], [0.7, 0, 0], 7 * n),
+            rod("b", [0.7, 0, 0], [0.7, 0.6, 0.2], 6 * n),
+        ],
+        [joint("ab", at("a", "end"), at("b", "start"))],
+        [
+            clamp("a", "start", prescribe={"rotation": {"axis": [1, 1, 0.5], "angle": 1.1}}),
+            clamp("b", "end", prescribe={"x": -0.1, "z": 0.15, "twist": 0.8}),
+        ],
+        [force("a", 0.4, 0, 0, -3), moment("a", 0.6, 0.5, 0, 0.5)],
+    )
+
+
+def followed(n: int) -> Scene:
+    """Forces and moments that turn with the joints."""
+    return scene_of(
+        [
+            rod("a", [0, 0, 0], [0.8, 0, 0], 8 * n),
+            rod("b", [0.8, 0, 0], [0.8, 0, 0.6], 6 * n, director=[0, 1, 0]),
+        ],
+        [joint("ab", at("a", "end"), at("b", "start"))],
+        [clamp("a", "start")],
+        [
+            force("b", "end", 0.5, 1.0, 0.2, follower=True),
+            moment("a", "end", 0.6, 0.2, -0.3, follower=True),
+        ],
+    )
+
+
+SCENES: list[Callable[[int], Scene]] = [
+    frame,
+    portal,
+    star,
+    tee,
+    loop,
+    curved,
+    natural,
+    moved,
+    followed,
+]
+
+
+def probed(scene: Scene, network: SpatialNetwork) -> dict[str, tuple[dict[str, Any], float]]:
+    """Probes at both ends and a third of every leg, with the reference's values."""
+    probes = {}
+    for number, leg in enumerate(network.pieces):
+        span = leg.end - leg.start
+        places = [(leg.start, "after"), (leg.start + span / 3, "after"), (leg.end, "before")]
+        ends: list[Any] = [leg.start, None, leg.end]
+        if "points" in network.rods[leg.rod]:
+            places, ends = [places[0], places[2]], ["start", "end"]
+        for place, (s, side) in enumerate(places):
+            for quantity in FIELDS:
+                probe = {"rod": leg.rod, "at": s, "quantity": quantity}
+                if isinstance(ends[place], str):
+                    probe["at"] = ends[place]
+                if quantity not in ("x", "y", "z"):
+                    probe["side"] = side
+                exact = float(network.along(quantity, leg.rod, np.array([s]), side)[0])
+                probes[f"{quantity}-{number}-{place}"] = (probe, exact)
+    for number, key in enumerate(network.supports):
+        if network.supports.count(key) == 1:
+            for quantity, exact in zip(REACTIONS, network.reaction(number), strict=True):
+                probe = {"support": number, "quantity": quantity}
+                probes[f"{quantity}-{number}"] = (probe, exact)
+    for item in scene["joints"]:
+        name = item["name"]
+        for quantity, exact in zip(ROTATION, network.rotation({"joint": name}), strict=True):
+            probes[f"{quantity}-{name}"] = ({"joint": name, "quantity": quantity}, exact)
+        for member in item["of"]:
+            leg = member["rod"]
+            for quantity, exact in zip(EXERTED, network.exerted(name, leg), strict=True):
+                probe = {"joint": name, "leg": leg, "quantity": quantity}
+                probes[f"{quantity}-{name}-{leg}"] = (probe, exact)
+    return probes
+
+
+def errors(scene: Scene, network: SpatialNetwork) -> dict[str, float]:
+    """Largest error of each kind of quantity against the reference."""
+    expected = probed(scene, network)
+    probes = {key: probe for key, (probe, _) in expected.items()}
+    result = der.run(
+        der.Scenario.from_dict(scene | {"analysis": "static", "output": {"probes": probes}})
+    )
+    assert result.status == "static_converged"
+    worst: dict[str, float] = {}
+    for key, (_, exact) in expected.items():
+        kind = re.sub("_?[xyz12]$|^t[xyz]$", "", key.split("-")[0]) or "tangent"
+        kind = kind if kind != "" else "place"
+        error = abs(result.probes[key][-1] - exact)
+        worst[kind] = max(worst.get(kind, 0.0), error)
+    return worst
+
+
+@pytest.mark.parametrize("make", SCENES, ids=lambda make: make.__name__)
+def test_equilibria(make: Callable[[int], Scene], fitted_order: Any) -> None:
+    network = SpatialNetwork(make(1)).solve()
+    rows = [errors(make(n), network) for n in FINENESS]
+    for quantity in rows[0]:
+        found = [row[quantity] for row in rows]
+        if max(found) > 1e-8:  # else it is exact but for rounding
+            assert fitted_order([1 / n for n in FINENESS], found) > 1.85, (quantity, found)

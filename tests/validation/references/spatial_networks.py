@@ -59,7 +59,8 @@ class _Line:
     """A rod as drawn: straight, or an arc of a circle."""
 
     def __init__(self, rod: Scene) -> None:
-        director = np.asarray(rod.get("director", [0.0, 0.0, 1.0]), dtype=float)
+        section = rod["cross_section"]
+        director = np.asarray(section.get("director", [0.0, 0.0, 1.0]), dtype=float)
         if "points" in rod:
             points = np.asarray(rod["points"], dtype=float)
             a, b, c = points[0], points[len(points) // 2], points[-1]

@@ -301,3 +301,159 @@ def test_equilibria(make: Callable[[int], Scene], fitted_order: Any) -> None:
         found = [row[quantity] for row in rows]
         if max(found) > 1e-8:  # else it is exact but for rounding
             assert fitted_order([1 / n for n in fineness], found) > 1.85, (quantity, found)
+
+
+def test_rods_balance_what_acts_on_a_joint() -> None:
+    probes = {
+        f"{leg}-{name}": {"joint": "middle", "leg": leg, "quantity": name}
+        for leg in ("a", "b", "c")
+        for name in EXERTED
+    }
+    result = der.run(
+        der.Scenario.from_dict(star(1) | {"analysis": "static", "output": {"probes": probes}})
+    )
+    exerted = np.reshape([float(series[-1]) for series in result.probes.values()], (3, 6))
+    assert exerted.sum(axis=0) == pytest.approx([0, -1, 2, -2.4, -1.8, 1.6], abs=1e-8)
+
+
+def test_a_clamp_turns_a_joint_more_than_once() -> None:
+    """Two rods in line are wound up by 2.5 turns: the twist is the same all along."""
+    straight = {"EA": 1e4, "GJ": 3.0, "EI1": 200.0, "EI2": 100.0}
+    turn = 5 * np.pi
+    scene = scene_of(
+        [
+            rod("a", [0, 0, 0], [1, 0, 0], 5, stiffness=straight),
+            rod("b", [1, 0, 0], [2, 0, 0], 5, stiffness=straight),
+        ],
+        [joint("ab", at("a", "end"), at("b", "start"))],
+        [clamp("a", "start"), clamp("b", "end", prescribe={"twist": turn})],
+        [],
+    )
+    probes = {
+        "torque": at("b", 0.5, quantity="torque"),
+        "wall": {"support": 0, "quantity": "reaction_moment_x"},
+    }
+    scene |= {"analysis": "static", "output": {"probes": probes}}
+    result = der.run(der.Scenario.from_dict(scene))
+    assert result.probes["torque"][-1] == pytest.approx(3.0 * turn / 2, rel=1e-9)
+    assert result.probes["wall"][-1] == pytest.approx(-3.0 * turn / 2, rel=1e-9)
+
+
+# Motion.
+
+
+def swinging(step: float, integrator: str, **time: Any) -> Scene:
+    """A soft L that growing couples at its corner and a force at its end swing out of its plane."""
+    soft = {"EA": 100.0, "rotary_inertia": 0.05}
+    couple = {"times": [0, 1], "values": [[0, 0, 0], [1.0, 1.5, 2.0]], "smooth": True}
+    push = {"times": [0, 1], "values": [[0, 0, 0], [0.5, 0.2, 1.0]], "smooth": True}
+    scene = scene_of(
+        [
+            rod("post", [0, 0, 0], [0.6, 0, 0], 3, stiffness=soft),
+            rod("arm", [0.6, 0, 0], [0.6, 0.8, 0.1], 4, stiffness=soft),
+        ],
+        [joint("corner", at("post", "end"), at("arm", "start"))],
+        [clamp("post", "start")],
+        [
+            {"moment": at("arm", "start", moment=couple)},
+            {"point_force": at("arm", "end", force=push)},
+            {"gravity": [0, 0, -3]},
+        ],
+    )
+    probes = {
+        "x": at("arm", "end", quantity="x"),
+        "z": at("arm", "end", quantity="z"),
+        "turn": {"joint": "corner", "quantity": "rotation_z"},
+        "before": {"joint": "corner", "leg": "post", "quantity": "moment_x"},
+        "after": {"joint": "corner", "leg": "arm", "quantity": "moment_y"},
+        "wall": {"support": 0, "quantity": "reaction_moment_y"},
+    }
+    settings = {"duration": 0.8, "step": step, "integrator": integrator, **time}
+    return scene | {"time": settings, "output": {"probes": probes, "every": 0.8}}
+
+
+def final(scene: Scene, **changes: Any) -> dict[str, float]:
+    result = der.run(der.Scenario.from_dict(scene).with_(**changes))
+    assert result.status == "completed"
+    return {name: float(values[-1]) for name, values in result.probes.items()}
+
+
+@pytest.fixture(scope="module")
+def swung() -> dict[str, float]:
+    return final(swinging(0.8 / 3200, "sdirk5"))
+
+
+@pytest.mark.parametrize(
+    ("integrator", "order", "coarse"),
+    [
+        ("implicit_euler", 1, 3200),
+        ("implicit_midpoint", 2, 1600),
+        ("generalized_alpha", 2, 1600),
+        ("newmark", 2, 1600),
+        ("bdf2", 2, 3200),
+        ("tr_bdf2", 2, 800),
+        ("sdirk4", 4, 400),
+        ("sdirk5", 5, 200),
+        ("verlet", 2, 800),
+    ],
+)
+def test_order_in_the_step(
+    integrator: str, order: int, coarse: int, swung: dict[str, float], fitted_order: Any
+) -> None:
+    counts = [coarse * 2**k for k in range(3)]
+    rows = [final(swinging(0.8 / count, integrator)) for count in counts]
+    errors = [np.linalg.norm([row[name] - swung[name] for name in swung]) for row in rows]
+    assert fitted_order([1 / count for count in counts], errors) > order - 0.15, errors
+
+
+def free_frame(integrator: str, step: float) -> Scene:
+    """Three arms that nothing holds, thrown so that they turn at first as a rigid body."""
+    rods, members = [], []
+    spin = np.array([1.0, -0.6, 2.0])
+    for k, out in enumerate(np.array([[0.5, 0.1, 0], [-0.2, 0.4, 0.1], [-0.2, -0.4, 0.2]])):
+        ends = np.linspace([0, 0, 0], out, 5) if k else np.linspace(out, [0, 0, 0], 5)
+        speed = np.cross(spin, ends) + [0.4, -0.2, 0.1]
+        members.append(at(f"arm{k}", "start" if k else "end"))
+        soft = {"EA": 50.0, "EI1": 0.02, "EI2": 0.03, "GJ": 0.02, "rotary_inertia": 0.01}
+        thrown = {"initial_velocity": speed.tolist(), "stiffness": soft}
+        rods.append(rod(f"arm{k}", ends[0].tolist(), ends[-1].tolist(), 4, **thrown))
+    scene = scene_of(rods, [joint("hub", *members)], [], [])
+    return scene | {"time": {"duration": 2, "step": step, "integrator": integrator}}
+
+
+@pytest.mark.parametrize("integrator", ["implicit_midpoint", "newmark", "verlet"])
+def test_a_free_frame_keeps_its_momenta(integrator: str) -> None:
+    simulation = der.Simulation(der.Scenario.from_dict(free_frame(integrator, 0.002)))
+    momentum, spin = simulation.momentum.copy(), simulation.angular_momentum.copy()
+    energy = simulation.energies.total
+    swings = []
+    for _ in range(10):
+        simulation.step(100)
+        swings.append(simulation.energies.elastic)
+        assert simulation.momentum == pytest.approx(momentum, abs=1e-9)
+        if integrator != "newmark":
+            assert simulation.angular_momentum == pytest.approx(spin, abs=1e-5)
+        assert simulation.energies.total == pytest.approx(energy, rel=1e-3)
+    assert max(swings) > 0.01 * energy
+
+
+@pytest.mark.parametrize("integrator", ["implicit_midpoint", "tr_bdf2", "bdf2", "verlet", "sdirk4"])
+def test_a_sudden_couple_is_balanced_at_every_step(integrator: str) -> None:
+    """The rotation of a joint has no inertia: its moments balance at the end of each step."""
+    scene = swinging(0.0005, integrator)
+    couple = {"times": [0, 0.02, 0.0201], "values": [[0, 0, 0], [0, 0, 0], [1.0, -0.5, 0.7]]}
+    scene["loads"] = [{"moment": at("arm", "start", moment=couple)}]
+    scene["time"]["duration"] = 0.1
+    probes = {
+        f"{leg}-{c}": {"joint": "corner", "leg": leg, "quantity": f"moment_{c}"}
+        for leg in ("post", "arm")
+        for c in "xyz"
+    }
+    scene["output"] = {"every": 0.0005, "probes": probes}
+    result = der.run(der.Scenario.from_dict(scene))
+    exerted = np.array([np.asarray(series) for series in result.probes.values()]).reshape(2, 3, -1)
+    times = np.asarray(result.times)
+    sums = exerted.sum(axis=0)
+    assert np.abs(sums[:, times < 0.0199]).max() < 1e-9
+    after = sums[:, times > 0.0203]
+    assert after == pytest.approx(np.outer([-1.0, 0.5, -0.7], np.ones(after.shape[1])), abs=1e-8)

@@ -229,9 +229,7 @@ class JointedSceneCheck {
       }
     }
     if (!scene.actuations.empty()) lacks({"actuation"}, "actuations in space");
-    if (scene.is_dynamic()) {
-      lacks({"time"}, "runs over time in space");
-    } else if (!std::holds_alternative<StaticAnalysis>(scene.analysis)) {
+    if (!scene.is_dynamic() && !std::holds_alternative<StaticAnalysis>(scene.analysis)) {
       lacks({"analysis"}, "this analysis in space");
     }
   }

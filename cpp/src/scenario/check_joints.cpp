@@ -148,6 +148,10 @@ class JointedSceneCheck {
   void run() {
     const SceneText& scene = context_.scene;
     const bool in_space = context_.diagnostics.dimension() == 3;
+    for (int i = 0; i < static_cast<int>(scene.joints.size()) && !in_space; ++i) {
+      if (scene.joints[static_cast<std::size_t>(i)].kind != JointKind::Ball) continue;
+      report(joint_path(i) / "kind", "in a plane a ball is a hinge: write 'hinge'");
+    }
     if (in_space) check_in_space();
     const ModelChoice needed = in_space ? ModelChoice::Spatial : ModelChoice::Planar;
     if (scene.model != ModelChoice::Auto && scene.model != needed) {
@@ -215,7 +219,9 @@ class JointedSceneCheck {
     const SceneText& scene = context_.scene;
     for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i) {
       const Joint& joint = scene.joints[static_cast<std::size_t>(i)];
-      if (joint.kind != JointKind::Rigid) lacks(joint_path(i) / "kind", "a hinge in space");
+      if (joint.kind == JointKind::Hinge) {
+        lacks(joint_path(i) / "kind", "a hinge in space, but a 'ball',");
+      }
     }
     for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
       const Support& support = scene.supports[static_cast<std::size_t>(i)];
@@ -224,13 +230,10 @@ class JointedSceneCheck {
       if (support.axis_rotation && support.twist) {
         lacks(path / "prescribe", "a clamp in space with a 'rotation' and a 'twist'");
       }
-      if (support.spring && !support.spring->rotational_stiffness.empty()) {
-        lacks(path / "spring" / "rotational_stiffness", "springs against rotation in space");
-      }
     }
     if (!scene.actuations.empty()) lacks({"actuation"}, "actuations in space");
-    if (!scene.is_dynamic() && !std::holds_alternative<StaticAnalysis>(scene.analysis)) {
-      lacks({"analysis"}, "this analysis in space");
+    if (std::holds_alternative<BucklingAnalysis>(scene.analysis)) {
+      lacks({"analysis"}, "linear buckling in space");
     }
   }
   void check_rod(const Rod& rod, const Path& path) {

@@ -14,7 +14,7 @@ Format<JointMember> member_format() {
 
 Format<Joint> joint_format() {
   return mapping(
-      Table<Joint>("joint", "Joins rods that meet at a point. In scenes of two components.")
+      Table<Joint>("joint", "Joins rods that meet at a point.")
           .required("name", &Joint::name, name(), "Name of the joint.")
           .required("of", &Joint::of, list_of(member_format(), 2),
                     "The rods that meet, each at its place.")
@@ -22,8 +22,10 @@ Format<Joint> joint_format() {
                     choice<JointKind>(
                         {{{"rigid", "the rods keep the angles between them, as if welded"},
                           JointKind::Rigid},
-                         {{"hinge", "each rod turns freely about the others"}, JointKind::Hinge}},
-                        {{"ball", "in a plane a ball is a hinge: write 'hinge'"}}),
+                         {{"hinge", "each rod turns freely about the others, in a plane"},
+                          JointKind::Hinge},
+                         {{"ball", "each rod turns freely about the others, in space"},
+                          JointKind::Ball}}),
                     "How they are joined."));
 }
 

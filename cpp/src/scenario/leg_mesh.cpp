@@ -231,9 +231,9 @@ void name_members(CheckContext& context) {
   };
   const auto need_rigid = [&](const Joint* joint, const Path& path) {
     if (joint == nullptr || joint->kind == JointKind::Rigid) return;
-    context.diagnostics.add(path, fmt::format("each rod has its own rotation in hinge '{}': write "
+    context.diagnostics.add(path, fmt::format("each rod has its own rotation in {} '{}': write "
                                               "the 'rod' and 'at' in place of 'joint'",
-                                              joint->name));
+                                              in_words(joint->kind), joint->name));
   };
   for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
     Support& support = scene.supports[static_cast<std::size_t>(i)];

@@ -293,6 +293,11 @@ typename SpatialEndCell<Curvature, Edges, Joints>::Constants sample_constants(
   return c;
 }
 
+inline SpatialJointSpring::Constants sample_constants(const SpatialJointSpring&, Random& random) {
+  return {{uniform(random, 0.5, 5.0), uniform(random, 0.0, 5.0), uniform(random, 0.5, 5.0)},
+          {sample_frame(direction(random), random), {kJoints}}};
+}
+
 enum class Shape { Arbitrary, NearStraight, NearFolded, Stretched };
 constexpr Shape kShapes[] = {Shape::Arbitrary, Shape::NearStraight, Shape::NearFolded,
                              Shape::Stretched};
@@ -526,6 +531,17 @@ void sample_frames(const SpatialEndCell<Curvature, Edges, Joints>& /*kernel*/,
     here.controls[c.reference_twist(cell)] =
         twist_between(frames[k], frames[k + 1]) + whole - (turned[k + 1] - turned[k]);
   }
+}
+
+/// Joints that have turned by up to 2 rad, of which up to 1.7 rad since the start of the step.
+template <class Coordinates>
+void sample_frames(const SpatialJointSpring& /*kernel*/, const SpatialJointSpring::Constants& c,
+                   const Coordinates& x, Random& random, Configuration& here) {
+  const Vec3 delta = uniform(random, 0.0, 1.7) * direction(random);
+  const Eigen::Quaterniond base =
+      rotation_by(-delta) * rotation_by(uniform(random, 0.0, 2.0) * direction(random));
+  here.controls.segment<3>(c.section.joint.first) = x - delta;
+  here.controls.segment<4>(c.section.joint.first + 3) << base.w(), base.vec();
 }
 
 template <class Kernel, class Coordinates>

@@ -21,6 +21,7 @@
 #include "der/energies/section_spring.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/spatial_end_cell.hpp"
+#include "der/energies/spatial_joint_spring.hpp"
 #include "der/energies/stretch.hpp"
 
 namespace der {
@@ -69,6 +70,7 @@ struct ElementLists {
       ElementList<SpatialEndCell<TangentCurvature, 1, 2>>,  //
       ElementList<SpatialEndCell<AngleCurvature, 2, 2>>,    //
       ElementList<SpatialEndCell<TangentCurvature, 2, 2>>,  //
+      ElementList<SpatialJointSpring>,                                  //
       ElementList<FromSpatialPivot<Fork>>,                              //
       ElementList<FromSpatialPivot<CornerFork>>,                        //
       ElementList<PlanarMoment>,                                        //

@@ -228,6 +228,33 @@ def followed(n: int) -> Scene:
     )
 
 
+def sprung(n: int) -> Scene:
+    """Springs against rotation inside a rod and at its end."""
+    return scene_of(
+        [rod("a", [0, 0, 0], [0.9, 0, 0], 9 * n), rod("b", [0.9, 0, 0], [0.9, 0.6, 0], 6 * n)],
+        [joint("ab", at("a", "end"), at("b", "start"))],
+        [
+            clamp("a", "start"),
+            at("a", 0.6, spring={"rotational_stiffness": [0.5, 3, 0.2]}),
+            at("b", "end", spring={"rotational_stiffness": [1, 2, 0.5], "stiffness": [1, 1, 2]}),
+        ],
+        [moment("a", "end", 0.8, 0.5, -0.6), force("b", "end", 0.2, 0.3, 1.0)],
+    )
+
+
+def balls(n: int) -> Scene:
+    """A bent beam on a strut that balls hold, and a rod that runs through one."""
+    return scene_of(
+        [
+            rod("beam", [0, 0, 0], [1, 0, 0], 10 * n),
+            rod("strut", [0.6, 0.4, -0.5], [0.6, 0, 0], 6 * n, stiffness={"EA": 300.0}),
+        ],
+        [joint("top", at("beam", 0.6), at("strut", "end")) | {"kind": "ball"}],
+        [clamp("beam", "start"), clamp("strut", "start")],
+        [force("beam", "end", 0.2, 1.0, -1.5), force("strut", 0.3, 0.5, 0, 0)],
+    )
+
+
 SCENES: list[Callable[[int], Scene]] = [
     frame,
     portal,
@@ -238,6 +265,8 @@ SCENES: list[Callable[[int], Scene]] = [
     natural,
     moved,
     followed,
+    sprung,
+    balls,
 ]
 
 
@@ -266,6 +295,8 @@ def probed(scene: Scene, network: SpatialNetwork) -> dict[str, tuple[dict[str, A
                 probes[f"{quantity}-{number}"] = (probe, exact)
     for item in scene["joints"]:
         name = item["name"]
+        if item.get("kind") == "ball":
+            continue
         for quantity, exact in zip(ROTATION, network.rotation({"joint": name}), strict=True):
             probes[f"{quantity}-{name}"] = ({"joint": name, "quantity": quantity}, exact)
         for member in item["of"]:
@@ -337,6 +368,43 @@ def test_a_clamp_turns_a_joint_more_than_once() -> None:
     result = der.run(der.Scenario.from_dict(scene))
     assert result.probes["torque"][-1] == pytest.approx(3.0 * turn / 2, rel=1e-9)
     assert result.probes["wall"][-1] == pytest.approx(-3.0 * turn / 2, rel=1e-9)
+
+
+def test_a_path_ends_at_the_equilibrium() -> None:
+    scene = frame(1) | {"analysis": "static"}
+    scene["loads"] = scene["loads"][:1]
+    probes = {"z": at("b", "end", quantity="z")}
+    exact = der.run(der.Scenario.from_dict(scene | {"output": {"probes": probes}})).probes["z"][-1]
+    path = der.continuation(scene | {"output": {"probes": probes}}, to=1.0)
+    assert path.path.factor[-1] == pytest.approx(1.0)
+    assert path.probes["z"][-1] == pytest.approx(exact, rel=1e-9)
+
+
+# Vibrations.
+
+
+def test_frequencies_of_a_cantilever_with_an_idle_joint(fitted_order: Any) -> None:
+    """Bending in two planes, and torsion, of a rod of length 1 that two are joined to."""
+    found = []
+    for n in FINENESS:
+        stiff = {"EA": 1e6, "rotary_inertia": 0.01}
+        scene = scene_of(
+            [
+                rod("a", [0, 0, 0], [0.4, 0, 0], 4 * n, stiffness=stiff),
+                rod("b", [0.4, 0, 0], [1, 0, 0], 6 * n, stiffness=stiff),
+            ],
+            [joint("ab", at("a", "end"), at("b", "start"))],
+            [clamp("a", "start")],
+            [],
+        )
+        simulation = der.Simulation(der.Scenario.from_dict(scene | {"analysis": "modes"}))
+        simulation.equilibrium()
+        found.append(2 * np.pi * simulation.modes(4).frequencies)
+    bending = np.outer([1.8751040687, 4.6940911330], np.ones(2)) ** 2 * np.sqrt([1.0, 0.4])
+    torsion = np.pi / 2 * np.sqrt(0.5 / 0.01)
+    exact = np.sort([*bending.ravel(), torsion])[:4]
+    for of_mode in (np.array(found) / exact - 1).T:
+        assert fitted_order([1 / n for n in FINENESS], of_mode) > 1.85
 
 
 # Motion.
@@ -412,7 +480,7 @@ def free_frame(integrator: str, step: float) -> Scene:
     spin = np.array([1.0, -0.6, 2.0])
     for k, out in enumerate(np.array([[0.5, 0.1, 0], [-0.2, 0.4, 0.1], [-0.2, -0.4, 0.2]])):
         ends = np.linspace([0, 0, 0], out, 5) if k else np.linspace(out, [0, 0, 0], 5)
-        speed = np.cross(spin, ends) + [0.4, -0.2, 0.1]
+        speed = np.cross(spin, ends) + np.array([0.4, -0.2, 0.1])
         members.append(at(f"arm{k}", "start" if k else "end"))
         soft = {"EA": 50.0, "EI1": 0.02, "EI2": 0.03, "GJ": 0.02, "rotary_inertia": 0.01}
         thrown = {"initial_velocity": speed.tolist(), "stiffness": soft}

@@ -51,9 +51,8 @@ class SpatialLegBuilder {
   [[nodiscard]] bool has_natural_curvature() const { return !rod_.natural_curvatures.empty(); }
   /// Natural curvature towards a director [1/m] by node.
   [[nodiscard]] auto natural_curvature(int director) const {
-    return [this, director](Index place) {
-      return rod_.natural_curvatures[to_size(place)][director];
-    };
+    return
+        [this, director](Index place) { return rod_.natural_curvatures[to_size(place)][director]; };
   }
   /// Natural twist of a cell in excess of the drawn one, over `length` about a place [rad].
   [[nodiscard]] double further_twist(double place, double length) const {
@@ -170,8 +169,7 @@ class SpatialLegBuilder {
       const Index node = first + i + (at_start ? 0 : 1);
       const double before = sides[to_size(i)].edge < 0 ? 0.0 : 0.5 * length(node - 1);
       const double after = sides[to_size(i) + 1].edge < 0 ? 0.0 : 0.5 * length(node);
-      const MaterialCurvature rest =
-          cell_rest(at_start, C, i, along(i), sides, before + after);
+      const MaterialCurvature rest = cell_rest(at_start, C, i, along(i), sides, before + after);
       c.rest.row(i) << rest.kappa_1, rest.kappa_2,
           rest.twist + further_twist(rod_.arc_length[to_size(node)] + 0.5 * (after - before),
                                      before + after);
@@ -185,14 +183,12 @@ class SpatialLegBuilder {
   template <class Sides>
   MaterialCurvature cell_rest(bool at_start, const Mat3& C, int cell, int from_joint,
                               const Sides& sides, double twist_length) {
-    MaterialCurvature rest = follow_cell(sides[to_size(cell)], sides[to_size(cell) + 1],
-                                         twist_length);
+    MaterialCurvature rest =
+        follow_cell(sides[to_size(cell)], sides[to_size(cell) + 1], twist_length);
     if (has_natural_curvature()) {
       const double sign = at_start ? 1.0 : -1.0;
-      rest.kappa_1 =
-          sign * turn_in_end_cell(leg_, at_start, C, from_joint, natural_curvature(0));
-      rest.kappa_2 =
-          sign * turn_in_end_cell(leg_, at_start, C, from_joint, natural_curvature(1));
+      rest.kappa_1 = sign * turn_in_end_cell(leg_, at_start, C, from_joint, natural_curvature(0));
+      rest.kappa_2 = sign * turn_in_end_cell(leg_, at_start, C, from_joint, natural_curvature(1));
     }
     return rest;
   }

@@ -116,9 +116,9 @@ Vec3 taken_by(const SpatialMoment::TurnedEdge& edge, const Vec3& moment, double 
 template <class Kind, class... Forces>
 constexpr bool kIsOneOf = (std::is_same_v<Kind, Forces> || ...);
 template <class Kind>
-constexpr bool kIsForce = kIsOneOf<Kind, PlanarFollowerForce, JointFollowerForce,
-                                   SpatialJointFollowerForce, FollowerForce, HeldForce<1>,
-                                   HeldForce<2>>;
+constexpr bool kIsForce =
+    kIsOneOf<Kind, PlanarFollowerForce, JointFollowerForce, SpatialJointFollowerForce,
+             FollowerForce, HeldForce<1>, HeldForce<2>>;
 
 /// The value that `f` has for a moment on edges; a default for a force, or a moment on a joint.
 template <class Result, class Kinds, class F>
@@ -283,8 +283,8 @@ void CirculatoryLoad::evaluate(const Configuration& here, CirculatoryTerm& out) 
 
 Vec3 CirculatoryLoad::force(const Configuration& here) const {
   Vec3 total = Vec3::Zero();
-  const bool is_moment = std::visit(
-      [](const auto& load) { return !kIsForce<std::decay_t<decltype(load)>>; }, kind);
+  const bool is_moment =
+      std::visit([](const auto& load) { return !kIsForce<std::decay_t<decltype(load)>>; }, kind);
   if (is_moment) return total;
   CirculatoryTerm term;
   evaluate(here, term);

@@ -21,8 +21,7 @@ Index num_turns(const Model& model) { return static_cast<Index>(model.followed_e
 
 Index num_saved_turns(const Model& model) {
   const Index rotations = model.dofs.num_rotations();
-  return model.dimension == 3 ? JointBlock::kSize * (rotations / 3)
-                              : num_turns(model) + rotations;
+  return model.dimension == 3 ? JointBlock::kSize * (rotations / 3) : num_turns(model) + rotations;
 }
 
 Eigen::Ref<const Vector> saved_turns(const Model& model, const State& state) {

@@ -37,8 +37,8 @@ class RotationVectorReader : public ProbeReader {
     const Index first = num_turns(model) + joint_block(model, rotation_).first;
     const Vec3 w = state.positions.segment<3>(model.dofs.rotation(rotation_));
     const JointBlock block{first};
-    const Eigen::Quaterniond now = rotation_by(w - block.coordinates(state.followed)) *
-                                   block.rotation(state.followed);
+    const Eigen::Quaterniond now =
+        rotation_by(w - block.coordinates(state.followed)) * block.rotation(state.followed);
     return rotation_vector(now)[component_];
   }
 
@@ -111,8 +111,8 @@ std::unique_ptr<ProbeReader> make_joint_reader(const scenario::Probe& probe,
       if (quantity.of_joint == JointQuantity::Rotation) {
         return std::make_unique<RotationReader>(model.dofs.rotation(rotation));
       }
-      const auto component = static_cast<Index>(quantity.of_joint) -
-                             static_cast<Index>(JointQuantity::RotationX);
+      const auto component =
+          static_cast<Index>(quantity.of_joint) - static_cast<Index>(JointQuantity::RotationX);
       return std::make_unique<RotationVectorReader>(rotation, component);
     }
     throw Error("model_error", "probe '" + probe.name + "': no rod of joint '" + joint->name +

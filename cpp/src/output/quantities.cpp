@@ -273,9 +273,8 @@ std::vector<Quantity> quantities_of_joints() {
       in(QuantityScope::Sections,
          of_joint(JointQuantity::MomentX, "moment_x", "N m",
                   "x component of the moment that a rod exerts on a joint, in space")),
-      in(QuantityScope::Sections,
-         of_joint(JointQuantity::MomentY, "moment_y", "N m",
-                  "y component of that moment, in space")),
+      in(QuantityScope::Sections, of_joint(JointQuantity::MomentY, "moment_y", "N m",
+                                           "y component of that moment, in space")),
       of_joint(JointQuantity::MomentZ, "moment_z", "N m",
                "z component of that moment; in a plane the moment, counter-clockwise"),
   };

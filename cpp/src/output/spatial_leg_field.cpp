@@ -200,8 +200,7 @@ class SpatialLegReader {
       const std::size_t bend = to_size(leg_.first_bend + node - first);
       moments_[to_size(node)] = [constants = bends.constants[bend],
                                  dofs = bends.dofs[bend]](const Configuration& here) {
-        const auto frames =
-            Bend::frames(constants, here.controls, gather(dofs, here.coordinates));
+        const auto frames = Bend::frames(constants, here.controls, gather(dofs, here.coordinates));
         VertexResponse response;
         VertexKinematics<Curvature>(frames.a.frame, frames.b.frame, frames.twist)
             .template respond<false>(constants.vertex, response);

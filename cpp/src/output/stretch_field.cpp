@@ -15,9 +15,9 @@
 #include "output/in_space.hpp"
 #include "output/lean_excess.hpp"
 #include "output/leg_field.hpp"
-#include "output/spatial_leg_field.hpp"
 #include "output/line_loads.hpp"
 #include "output/rod_field.hpp"
+#include "output/spatial_leg_field.hpp"
 #include "output/spread_forces.hpp"
 #include "output/stretch_samples.hpp"
 

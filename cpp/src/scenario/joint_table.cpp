@@ -18,15 +18,15 @@ Format<Joint> joint_format() {
           .required("name", &Joint::name, name(), "Name of the joint.")
           .required("of", &Joint::of, list_of(member_format(), 2),
                     "The rods that meet, each at its place.")
-          .optional("kind", &Joint::kind,
-                    choice<JointKind>(
-                        {{{"rigid", "the rods keep the angles between them, as if welded"},
-                          JointKind::Rigid},
-                         {{"hinge", "each rod turns freely about the others, in a plane"},
-                          JointKind::Hinge},
-                         {{"ball", "each rod turns freely about the others, in space"},
-                          JointKind::Ball}}),
-                    "How they are joined."));
+          .optional(
+              "kind", &Joint::kind,
+              choice<JointKind>({{{"rigid", "the rods keep the angles between them, as if welded"},
+                                  JointKind::Rigid},
+                                 {{"hinge", "each rod turns freely about the others, in a plane"},
+                                  JointKind::Hinge},
+                                 {{"ball", "each rod turns freely about the others, in space"},
+                                  JointKind::Ball}}),
+              "How they are joined."));
 }
 
 }  // namespace der::scenario

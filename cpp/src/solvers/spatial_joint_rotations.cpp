@@ -47,7 +47,8 @@ SpatialJointRotations::SpatialJointRotations(const Model& model) : model_(model)
 }
 
 void SpatialJointRotations::find_loads(const Vector& extra_force) {
-  for (std::size_t i = 0; i < free_.size(); ++i) loads_[static_cast<Index>(i)] = extra_force[free_[i]];
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    loads_[static_cast<Index>(i)] = extra_force[free_[i]];
   const Index first = model_.dofs.rotation(0);
   CirculatoryTerm term;
   for (const std::size_t load : moments_) {
@@ -60,7 +61,8 @@ void SpatialJointRotations::find_loads(const Vector& extra_force) {
       for (Index column = 0; column < 3; ++column) {
         const Index b = number_[to_size(moment.coordinates[to_size(column)].front().dof - first)];
         if (b >= 0) {
-          entries_.emplace_back(static_cast<int>(a), static_cast<int>(b), term.tangent(row, column));
+          entries_.emplace_back(static_cast<int>(a), static_cast<int>(b),
+                                term.tangent(row, column));
         }
       }
     }

@@ -59,7 +59,8 @@ void hold_joint(const scenario::Support& support, std::size_t number, Index plac
     const bool turns = axis[c] != 0.0;
     hold(model, model.dofs.rotation(rotation) + c, turns ? control : -1, turns ? axis[c] : 1.0);
   }
-  if (control >= 0) model.prescribed.push_back({number, support.twist ? "twist" : "angle", control});
+  if (control >= 0)
+    model.prescribed.push_back({number, support.twist ? "twist" : "angle", control});
 }
 
 /// Holds or moves the nodes of a support.

@@ -158,7 +158,8 @@ LoadedEdges<2> sample_planar(Shape shape, Random& random) {
   return sample;
 }
 
-/// A joint that has turned by up to 1.7 rad since the start of the step, with a load that acts there.
+/// A joint that has turned by up to 1.7 rad since the start of the step, with a load that acts
+/// there.
 template <class Kind>
 LoadedEdges<3> sample_at_joint(Kind kind, Random& random) {
   LoadedEdges<3> sample = sample_edges(Shape::Arbitrary, random);

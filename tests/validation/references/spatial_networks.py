@@ -7,14 +7,15 @@ moment that the part beyond s exerts on the part before it,
     r' = (1 + n . t / EA) t,    n' = -q,    m' = -r' x n,    d_i' = w x d_i
     w = (m . d2 / EI1 + k1) d2 - (-m . d1 / EI2 + k2) d1 + (m . t / GJ) t
 
-with a dead load q and natural curvatures k1, k2 towards the directors. Unknown are the place and the
-rotation of each joint, and (n, m) where each piece begins. The equations say that each piece ends at
-its joint with the joint's rotation, and that forces and moments of joints balance. Pieces are
+with a dead load q and natural curvatures k1, k2 towards the directors. Unknown are the place of
+each joint, the rotation of each group of rods that turn together, and (n, m) where each piece
+begins. The equations say that each piece ends at its joint with the joint's rotation, and that
+forces and moments of joints balance. Pieces are
 integrated in equal steps of the method of order 8 of Dormand and Prince. Derivatives are complex
 steps, and each iteration of Newton's method counts rotations from the last one.
 
 A scene is read as far as it has rods that are straight or arcs of circles drawn by `points`, rigid
-joints, supports (components, clamps, constant motions, springs to anchors) and loads. Nothing is
+joints and balls, supports (components, clamps, constant motions, springs) and loads. Nothing is
 shared with `der`.
 """
 
@@ -111,6 +112,26 @@ class _Line:
         return float(bend @ self.section[0]), float(bend @ self.section[1])
 
 
+def _spring_energy(stiffness: Array, section: Array, turn: Any) -> Any:
+    """Of a rotational spring, by the strains between a section as drawn and as `turn` turns it.
+
+    The strains are the turning angle towards the directors of half the twist, and the twist.
+    """
+    now = section @ turn.T
+    d1, _, t = section
+    across = np.cross(t, now[2])
+    square, cosine = across @ across, t @ now[2]
+    sine = np.sqrt(square)
+    factor = 1 + square / 6 if abs(square) < 1e-8 else np.arctan(sine / cosine) / sine
+    moved = cosine * d1 + np.cross(across, d1) + (across @ d1) / (1 + cosine) * across
+    second = np.cross(now[2], moved)
+    twist = np.arctan((now[0] @ second) / (now[0] @ moved))
+    c, s = np.cos(twist / 2), np.sin(twist / 2)
+    directors = c * d1 + s * section[1], c * section[1] - s * d1
+    strains = np.array([factor * (m @ now[2]) for m in directors] + [twist])
+    return 0.5 * stiffness @ strains**2
+
+
 @dataclass
 class _Piece:
     """A part of a rod between two cuts."""
@@ -119,24 +140,51 @@ class _Piece:
     start: float
     end: float
     joints: tuple[int, int]
+    rotations: tuple[int, int]
     sections: tuple[Array, Array]
     load: Array
 
 
 @dataclass
 class _Joint:
-    """Where pieces meet: what holds and loads it."""
+    """A point where pieces meet: what holds and loads it."""
 
     place: Array
     held: list[bool] = field(default_factory=lambda: [False] * 3)
     moved: Array = field(default_factory=lambda: np.zeros(3))
     spring: Array = field(default_factory=lambda: np.zeros(3))
-    clamped: bool = False
-    turned: Array = field(default_factory=lambda: np.zeros(3))
     force: Array = field(default_factory=lambda: np.zeros(3))
-    follower: Array = field(default_factory=lambda: np.zeros(3))
+    followers: list[tuple[int, Array]] = field(default_factory=list)  # with their rotations
+
+
+@dataclass
+class _Rotation:
+    """The rotation of sections that turn together."""
+
+    held: bool = False
+    moved: Array = field(default_factory=lambda: np.zeros(3))
     moment: Array = field(default_factory=lambda: np.zeros(3))
-    following_moment: Array = field(default_factory=lambda: np.zeros(3))
+    follower: Array = field(default_factory=lambda: np.zeros(3))
+    springs: list[tuple[Array, Array]] = field(default_factory=list)  # stiffness, section
+
+    def spring_moment(self, turn: Array) -> Array:
+        """What its springs exert."""
+        moment = np.zeros(3)
+        for stiffness, section in self.springs:
+            for c in range(3):
+                nudged = turn + 1j * _TINY * _skew(np.eye(3)[c]) @ turn
+                moment[c] -= _spring_energy(stiffness, section, nudged).imag / _TINY
+        return moment
+
+    def spring_slope(self, turn: Array) -> Array:
+        """Its derivative by a further rotation, by differences."""
+        if not self.springs:
+            return np.zeros((3, 3))
+        columns = []
+        for c in range(3):
+            steps = [Rotation.from_rotvec(h * np.eye(3)[c]).as_matrix() for h in (1e-5, -1e-5)]
+            columns.append(np.subtract(*(self.spring_moment(each @ turn) for each in steps)) / 2e-5)
+        return np.array(columns).T
 
 
 class SpatialNetwork:
@@ -147,17 +195,17 @@ class SpatialNetwork:
         self.rods = {rod["name"]: rod for rod in scene["rods"]}
         self.lines = {name: _Line(rod) for name, rod in self.rods.items()}
         self.joints: list[_Joint] = []
+        self.rotations: list[_Rotation] = []
         self.pieces: list[_Piece] = []
-        self.number: dict[Key, int] = {}
-        self._members = {
-            joint["name"]: joint["of"][0] for joint in scene.get("joints", [])
-        }
+        self.joint_at: dict[Key, int] = {}
+        self.rotation_at: dict[Key, int] = {}
+        self._members = {joint["name"]: joint["of"][0] for joint in scene.get("joints", [])}
         self._cut(scene)
         self._hold(scene)
         self._load(scene)
         self._parameters()
         self.x = np.array([joint.place for joint in self.joints])
-        self.turns = np.repeat(np.eye(3)[np.newaxis], len(self.joints), axis=0)
+        self.turns = np.repeat(np.eye(3)[np.newaxis], len(self.rotations), axis=0)
         self.forces = np.zeros((len(self.pieces), 6))
 
     def key(self, place: Scene) -> Key:
@@ -180,12 +228,18 @@ class SpatialNetwork:
         keys |= {(rod, end) for rod in self.rods for end in (0.0, 1.0)}
         for joint in joints:
             members = [self.key(member) for member in joint["of"]]
-            self.number |= dict.fromkeys(members, len(self.joints))
+            self.joint_at |= dict.fromkeys(members, len(self.joints))
             self.joints.append(_Joint(self._drawn(members[0])))
+            if joint.get("kind", "rigid") == "rigid":
+                self.rotation_at |= dict.fromkeys(members, len(self.rotations))
+                self.rotations.append(_Rotation())
         for key in sorted(keys):
-            if key not in self.number:
-                self.number[key] = len(self.joints)
+            if key not in self.joint_at:
+                self.joint_at[key] = len(self.joints)
                 self.joints.append(_Joint(self._drawn(key)))
+            if key not in self.rotation_at:
+                self.rotation_at[key] = len(self.rotations)
+                self.rotations.append(_Rotation())
         for name, line in self.lines.items():
             cuts = sorted(share for owner, share in keys if owner == name)
             for a, b in itertools.pairwise(cuts):
@@ -194,7 +248,8 @@ class SpatialNetwork:
                     _Piece(
                         name,
                         *ends,
-                        (self.number[name, a], self.number[name, b]),
+                        (self.joint_at[name, a], self.joint_at[name, b]),
+                        (self.rotation_at[name, a], self.rotation_at[name, b]),
                         (line.at(ends[0])[1], line.at(ends[1])[1]),
                         np.zeros(3),
                     )
@@ -202,44 +257,49 @@ class SpatialNetwork:
 
     def _drawn(self, key: Key) -> Array:
         line = self.lines[key[0]]
-        return line.at(key[1] * line.length)[0]
+        place: Array = line.at(key[1] * line.length)[0]
+        return place
 
     def _hold(self, scene: Scene) -> None:
-        self.supports = [self.number[self.key(each)] for each in scene.get("supports", [])]
-        for number, support in zip(self.supports, scene.get("supports", []), strict=True):
-            joint = self.joints[number]
+        self.supports = [self.key(each) for each in scene.get("supports", [])]
+        for key, support in zip(self.supports, scene.get("supports", []), strict=True):
+            joint, rotation = self.joints[self.joint_at[key]], self.rotations[self.rotation_at[key]]
+            section = self.lines[key[0]].at(key[1] * self.lines[key[0]].length)[1]
             moved = support.get("prescribe", {})
             for c, axis in enumerate("xyz"):
                 if support.get("clamp") or axis in support.get("fix", []) or axis in moved:
                     joint.held[c] = True
                     joint.moved[c] += moved.get(axis, 0.0)
             if support.get("clamp"):
-                joint.clamped = True
+                rotation.held = True
                 if "rotation" in moved:
-                    axis = np.asarray(moved["rotation"]["axis"], dtype=float)
-                    joint.turned += moved["rotation"]["angle"] * axis / np.linalg.norm(axis)
+                    about = np.asarray(moved["rotation"]["axis"], dtype=float)
+                    rotation.moved += moved["rotation"]["angle"] * about / np.linalg.norm(about)
                 if "twist" in moved:
-                    rod, share = self.key(support)
-                    line = self.lines[rod]
-                    joint.turned += moved["twist"] * line.at(share * line.length)[1][2]
-            stiffness = support.get("spring", {}).get("stiffness", 0.0)
+                    rotation.moved += moved["twist"] * section[2]
+            spring = support.get("spring", {})
+            stiffness = spring.get("stiffness", 0.0)
             joint.spring += np.full(3, stiffness) if np.isscalar(stiffness) else stiffness
+            if "rotational_stiffness" in spring:
+                turning = np.asarray(spring["rotational_stiffness"], dtype=float)
+                rotation.springs.append((np.broadcast_to(turning, 3), section))
 
     def _load(self, scene: Scene) -> None:
         for load in scene.get("loads", []):
             kind, what = next(iter(load.items()))
             if kind == "point_force":
-                joint = self.joints[self.number[self.key(what)]]
+                key = self.key(what)
+                joint = self.joints[self.joint_at[key]]
                 if what.get("follower"):
-                    joint.follower += what["force"]
+                    joint.followers.append((self.rotation_at[key], np.asarray(what["force"])))
                 else:
                     joint.force += what["force"]
             elif kind == "moment":
-                joint = self.joints[self.number[self.key(what)]]
+                rotation = self.rotations[self.rotation_at[self.key(what)]]
                 if what.get("follower"):
-                    joint.following_moment += what["moment"]
+                    rotation.follower += what["moment"]
                 else:
-                    joint.moment += what["moment"]
+                    rotation.moment += what["moment"]
             elif kind == "distributed_force":
                 for piece in self.pieces:
                     if piece.rod == what["rod"]:
@@ -314,14 +374,13 @@ class SpatialNetwork:
         """(r, d1, d2, t, n, m) where each piece begins, shape (lanes, 18, pieces)."""
         y = np.empty((18, len(self.pieces)))
         for k, piece in enumerate(self.pieces):
-            joint = piece.joints[0]
-            y[:3, k] = self.x[joint]
-            y[3:12, k] = (piece.sections[0] @ self.turns[joint].T).ravel()
+            y[:3, k] = self.x[piece.joints[0]]
+            y[3:12, k] = (piece.sections[0] @ self.turns[piece.rotations[0]].T).ravel()
             y[12:, k] = self.forces[k]
         return np.repeat(y[np.newaxis].astype(complex), lanes, axis=0)
 
     def _system(self, level: float) -> tuple[Array, Array]:
-        J, P = len(self.joints), len(self.pieces)
+        J, R, P = 3 * len(self.joints), 3 * len(self.rotations), len(self.pieces)
         y = self._starts(12)
         for c in range(3):
             y[c, c] += 1j * _TINY  # a place
@@ -333,76 +392,80 @@ class SpatialNetwork:
             y[6 + c, 12 + c] += 1j * _TINY
         y = self._shoot(y, self._span, level)
         end, slope = y[0].real, y.imag / _TINY  # slope[by, of, piece]
-        residual = np.zeros(6 * J + 6 * P)
+        residual = np.zeros(J + R + 6 * P)
         matrix = np.zeros((len(residual), len(residual)))
         for i, joint in enumerate(self.joints):
-            R, row = self.turns[i], 6 * i
-            turned = slice(row + 3, row + 6)
             moved = self.x[i] - joint.place
-            follower, following = level * R @ joint.follower, level * R @ joint.following_moment
             for c in range(3):
+                row = 3 * i + c
                 if joint.held[c]:
-                    residual[row + c] = moved[c] - level * joint.moved[c]
-                    matrix[row + c, row + c] = 1.0
-                else:
-                    residual[row + c] = (
-                        level * joint.force[c] + follower[c] - joint.spring[c] * moved[c]
-                    )
-                    matrix[row + c, row + c] = -joint.spring[c]
-                    matrix[row + c, turned] = -_skew(follower)[c]
-            if joint.clamped:
-                goal = Rotation.from_rotvec(level * joint.turned)
-                residual[turned] = (Rotation.from_matrix(R) * goal.inv()).as_rotvec()
-                matrix[turned, turned] = np.eye(3)
+                    residual[row] = moved[c] - level * joint.moved[c]
+                    matrix[row, row] = 1.0
+                    continue
+                residual[row] = level * joint.force[c] - joint.spring[c] * moved[c]
+                matrix[row, row] = -joint.spring[c]
+                for number, drawn in joint.followers:
+                    force = level * self.turns[number] @ drawn
+                    residual[row] += force[c]
+                    matrix[row, J + 3 * number : J + 3 * number + 3] -= _skew(force)[c]
+        for i, rotation in enumerate(self.rotations):
+            rows = slice(J + 3 * i, J + 3 * i + 3)
+            turn = self.turns[i]
+            if rotation.held:
+                goal = Rotation.from_rotvec(level * rotation.moved)
+                residual[rows] = (Rotation.from_matrix(turn) * goal.inv()).as_rotvec()
+                matrix[rows, rows] = np.eye(3)
             else:
-                residual[turned] = level * joint.moment + following
-                matrix[turned, turned] = -_skew(following)
+                following = level * turn @ rotation.follower
+                residual[rows] = level * rotation.moment + following + rotation.spring_moment(turn)
+                matrix[rows, rows] = rotation.spring_slope(turn) - _skew(following)
         for k, piece in enumerate(self.pieces):
-            a, b = piece.joints
-            own = 6 * J + 6 * k
-            of = [*range(6 * a, 6 * a + 6), *range(own, own + 6)]
-            for number, sign in ((a, 1.0), (b, -1.0)):
-                joint = self.joints[number]
-                for c in range(6):
-                    if joint.clamped if c >= 3 else joint.held[c]:
+            own = J + R + 6 * k
+            at_ends = []
+            ends = list(zip(piece.joints, piece.rotations, strict=True))
+            for a, b in ends:
+                at_ends.append([*range(3 * a, 3 * a + 3), *range(J + 3 * b, J + 3 * b + 3)])
+            of = at_ends[0] + list(range(own, own + 6))
+            for side, (a, b) in enumerate(ends):
+                held = [*self.joints[a].held, *[self.rotations[b].held] * 3]
+                for c, row in enumerate(at_ends[side]):
+                    if held[c]:
                         continue
-                    row = 6 * number + c
-                    if sign > 0:
+                    if side == 0:
                         residual[row] += self.forces[k, c]
                         matrix[row, own + c] += 1.0
                     else:
                         residual[row] -= end[12 + c, k]
                         matrix[row, of] -= slope[:, 12 + c, k]
-            residual[own : own + 3] = end[:3, k] - self.x[b]
+            residual[own : own + 3] = end[:3, k] - self.x[piece.joints[1]]
             matrix[own : own + 3, of] = slope[:, :3, k].T
-            matrix[own : own + 3, 6 * b : 6 * b + 3] -= np.eye(3)
-            goals = piece.sections[1] @ self.turns[b].T
+            matrix[own : own + 3, at_ends[1][:3]] -= np.eye(3)
+            goals = piece.sections[1] @ self.turns[piece.rotations[1]].T
             for d in range(3):
                 rows = slice(3 + 3 * d, 6 + 3 * d)
                 residual[own + 3 : own + 6] += 0.5 * np.cross(goals[d], end[rows, k])
                 matrix[own + 3 : own + 6, of] += 0.5 * _skew(goals[d]) @ slope[:, rows, k].T
                 # goals[d] turns by w x goals[d].
-                matrix[own + 3 : own + 6, 6 * b + 3 : 6 * b + 6] += (
+                matrix[own + 3 : own + 6, at_ends[1][3:]] += (
                     0.5 * _skew(end[rows, k]) @ _skew(goals[d])
                 )
         return residual, matrix
 
     def solve(self, levels: int = 4) -> SpatialNetwork:
         """Find the equilibrium, with all loads and motions raised in equal parts."""
-        J = len(self.joints)
+        J, R = 3 * len(self.joints), 3 * len(self.rotations)
         for level in np.arange(1, levels + 1) / levels:
             step = np.inf
             for _ in range(60):
                 residual, matrix = self._system(level)
                 scale = np.abs(matrix).max(axis=1)
                 change = -np.linalg.solve(matrix / scale[:, np.newaxis], residual / scale)
-                of_joints = change[: 6 * J].reshape(-1, 6)
-                before, step = step, float(np.abs(of_joints).max())
+                before, step = step, float(np.abs(change[: J + R]).max())
                 share = min(1.0, 0.5 / max(step, 1e-300))
-                self.x = self.x + share * of_joints[:, :3]
-                turns = Rotation.from_rotvec(share * of_joints[:, 3:]).as_matrix()
-                self.turns = turns @ self.turns
-                self.forces = self.forces + share * change[6 * J :].reshape(-1, 6)
+                self.x = self.x + share * change[:J].reshape(-1, 3)
+                turns = Rotation.from_rotvec(share * change[J : J + R].reshape(-1, 3))
+                self.turns = turns.as_matrix() @ self.turns
+                self.forces = self.forces + share * change[J + R :].reshape(-1, 6)
                 if step < 1e-10 and step >= 0.5 * before:
                     break
             else:
@@ -444,35 +507,41 @@ class SpatialNetwork:
 
     def rotation(self, place: Scene) -> Array:
         """Rotation vector of a joint, of up to half a turn."""
-        turn = Rotation.from_matrix(self.turns[self.number[self.key(place)]])
+        turn = Rotation.from_matrix(self.turns[self.rotation_at[self.key(place)]])
         return np.asarray(turn.as_rotvec())
 
     def exerted(self, joint: str, rod: str) -> Array:
         """Force and moment (6) that the pieces of a rod exert on a joint."""
-        number = self.number[self.key({"joint": joint})]
-        return self._exerted(number, [rod])
+        number = self.joint_at[self.key({"joint": joint})]
+        of_rod = [k for k, piece in enumerate(self.pieces) if piece.rod == rod]
+        return self._exerted("joints", number, of_rod)
 
-    def _exerted(self, number: int, rods: list[str]) -> Array:
+    def _exerted(self, at: str, number: int, pieces: list[int]) -> Array:
         ends = self._shoot(self._starts(1), self._span, 1.0)[0].real
         total = np.zeros(6)
-        for k, piece in enumerate(self.pieces):
-            if piece.rod not in rods:
-                continue
-            if piece.joints[0] == number:
+        for k in pieces:
+            of = getattr(self.pieces[k], at)
+            if of[0] == number:
                 total += self.forces[k]
-            if piece.joints[1] == number:
+            if of[1] == number:
                 total -= ends[12:, k]
         return total
 
     def reaction(self, support: int) -> Array:
         """Force and moment that a support exerts, where it is the only one at its place."""
-        number = self.supports[support]
-        joint, R = self.joints[number], self.turns[number]
-        total = self._exerted(number, list(self.rods))
+        key = self.supports[support]
+        number, turned = self.joint_at[key], self.rotation_at[key]
+        joint, rotation = self.joints[number], self.rotations[turned]
+        every = list(range(len(self.pieces)))
+        force = -self._exerted("joints", number, every)[:3] - joint.force
+        for group, drawn in joint.followers:
+            force = force - self.turns[group] @ drawn
         exerted = np.zeros(6)
         exerted[:3] = -joint.spring * (self.x[number] - joint.place)
         held = np.array(joint.held)
-        exerted[:3][held] = (-total[:3] - joint.force - R @ joint.follower)[held]
-        if joint.clamped:
-            exerted[3:] = -total[3:] - joint.moment - R @ joint.following_moment
+        exerted[:3][held] = force[held]
+        exerted[3:] = rotation.spring_moment(self.turns[turned])
+        if rotation.held:
+            total = self._exerted("rotations", turned, every)[3:]
+            exerted[3:] = -total - rotation.moment - self.turns[turned] @ rotation.follower
         return exerted

@@ -62,14 +62,14 @@ struct ElementLists {
       ElementList<FromSpatialPivot<CornerBend>>,                        //
       ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
       ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
-      ElementList<SpatialEndCell<AngleCurvature, 1, 1>>,    //
-      ElementList<SpatialEndCell<TangentCurvature, 1, 1>>,  //
-      ElementList<SpatialEndCell<AngleCurvature, 2, 1>>,    //
-      ElementList<SpatialEndCell<TangentCurvature, 2, 1>>,  //
-      ElementList<SpatialEndCell<AngleCurvature, 1, 2>>,    //
-      ElementList<SpatialEndCell<TangentCurvature, 1, 2>>,  //
-      ElementList<SpatialEndCell<AngleCurvature, 2, 2>>,    //
-      ElementList<SpatialEndCell<TangentCurvature, 2, 2>>,  //
+      ElementList<SpatialEndCell<AngleCurvature, 1, 1>>,                //
+      ElementList<SpatialEndCell<TangentCurvature, 1, 1>>,              //
+      ElementList<SpatialEndCell<AngleCurvature, 2, 1>>,                //
+      ElementList<SpatialEndCell<TangentCurvature, 2, 1>>,              //
+      ElementList<SpatialEndCell<AngleCurvature, 1, 2>>,                //
+      ElementList<SpatialEndCell<TangentCurvature, 1, 2>>,              //
+      ElementList<SpatialEndCell<AngleCurvature, 2, 2>>,                //
+      ElementList<SpatialEndCell<TangentCurvature, 2, 2>>,              //
       ElementList<SpatialJointSpring>,                                  //
       ElementList<FromSpatialPivot<Fork>>,                              //
       ElementList<FromSpatialPivot<CornerFork>>,                        //

@@ -146,8 +146,7 @@ struct SpatialEndCell {
       return {VertexKinematics<Curvature>(
           frames[I], frames[I + 1],
           whole_twist<double>(frames[I], frames[I + 1], turned(c, x, int(I)),
-                              turned(c, x, int(I) + 1),
-                              controls[c.reference_twist(int(I))]))...};
+                              turned(c, x, int(I) + 1), controls[c.reference_twist(int(I))]))...};
     }
   };
 
@@ -213,8 +212,8 @@ struct SpatialEndCell {
       for (int j = 0; j < kCells; ++j) {
         const double share = c.per_compliance(i, j);
         const Vec3 stiffness(c.EI_1 * share, c.EI_2 * share, i == j ? c.twist[i] : 0.0);
-        out.hessian.noalias() += strains[std::size_t(i)].transpose() * stiffness.asDiagonal() *
-                                 strains[std::size_t(j)];
+        out.hessian.noalias() +=
+            strains[std::size_t(i)].transpose() * stiffness.asDiagonal() * strains[std::size_t(j)];
       }
     }
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -233,8 +232,7 @@ struct SpatialEndCell {
           response.joints[std::size_t(number)].geometric_stiffness(moment);
       return;
     }
-    const EdgeFrame::Block block =
-        response.edges[std::size_t(number)].geometric_stiffness(moment);
+    const EdgeFrame::Block block = response.edges[std::size_t(number)].geometric_stiffness(moment);
     const std::array<int, 2> nodes{3 * number, 3 * number + 3};
     const int theta = 3 * kNodes + number;
     for (int a = 0; a < 2; ++a) {

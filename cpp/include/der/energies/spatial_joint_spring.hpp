@@ -41,8 +41,8 @@ struct SpatialJointSpring {
     const Mat3 spin = turn.spin();
     out.gradient = spin.transpose() * response.moment;
     if constexpr (D == Derivatives::Gradient) return;
-    out.hessian = spin.transpose() * response.stiffness * spin +
-                  turn.geometric_stiffness(response.moment);
+    out.hessian =
+        spin.transpose() * response.stiffness * spin + turn.geometric_stiffness(response.moment);
   }
 };
 

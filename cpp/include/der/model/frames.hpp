@@ -12,10 +12,10 @@ struct Model;
 
 /// The vertex between two edges with section frames, or between one and a clamp or a joint.
 struct FramedVertex {
-  Index before = -1;   ///< number of the edge; -1: a clamp or joint, before the edge `after`
-  Index after = -1;    ///< number of the edge; -1: a clamp or joint
-  HeldFrame held;      ///< of the clamp, if there is one
-  Index rotation = -1;  ///< first degree of freedom of the joint's rotation, if there is one
+  Index before = -1;     ///< number of the edge; -1: a clamp or joint, before the edge `after`
+  Index after = -1;      ///< number of the edge; -1: a clamp or joint
+  HeldFrame held;        ///< of the clamp, if there is one
+  Index rotation = -1;   ///< first degree of freedom of the joint's rotation, if there is one
   JointSection joint{};  ///< of the joint
 
   /// Entry of the reference twist.

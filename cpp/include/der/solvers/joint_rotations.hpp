@@ -37,11 +37,11 @@ class JointRotations {
 
   const Model& model_;
   std::unique_ptr<SpatialJointRotations> in_space_;  // null: in a plane
-  std::vector<Index> free_;                       // degrees of freedom
-  std::vector<Index> number_;                     // of each rotation among these; -1: held
-  std::vector<ControlledForce> moments_;          // on these
-  std::vector<Coupling> couplings_;               // in the order of the elements
-  std::vector<std::vector<std::size_t>> beside_;  // numbers of the couplings of each rotation
+  std::vector<Index> free_;                          // degrees of freedom
+  std::vector<Index> number_;                        // of each rotation among these; -1: held
+  std::vector<ControlledForce> moments_;             // on these
+  std::vector<Coupling> couplings_;                  // in the order of the elements
+  std::vector<std::vector<std::size_t>> beside_;     // numbers of the couplings of each rotation
   Configuration here_;
   Vector residual_;   // the gradient of the energy less the moments [N m]
   Vector stiffness_;  // on the diagonal [N m]

@@ -26,8 +26,8 @@ class SpatialJointRotations {
   void find_loads(const Vector& extra_force);
 
   const Model& model_;
-  std::vector<Index> free_;    // degrees of freedom
-  std::vector<Index> number_;  // of each coordinate among these; -1: held
+  std::vector<Index> free_;           // degrees of freedom
+  std::vector<Index> number_;         // of each coordinate among these; -1: held
   std::vector<std::size_t> moments_;  // numbers of circulatory loads
   Configuration here_;
   Vector residual_;  // the gradient of the energy less the moments [N m]

@@ -184,7 +184,7 @@ class _Rotation:
         for c in range(3):
             steps = [Rotation.from_rotvec(h * np.eye(3)[c]).as_matrix() for h in (1e-5, -1e-5)]
             columns.append(np.subtract(*(self.spring_moment(each @ turn) for each in steps)) / 2e-5)
-        return np.array(columns).T
+        return np.stack(columns, axis=1)
 
 
 class SpatialNetwork:

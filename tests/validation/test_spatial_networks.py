@@ -187,7 +187,9 @@ def natural(n: int) -> Scene:
     """Natural curvatures that differ from rod to rod, and weight."""
     return scene_of(
         [
-            rod("a", [0, 0, 0], [0.6, 0, 0], 6 * n, natural_curvature=[0.8, -0.5]),
+            rod(
+                "a", [0, 0, 0], [0.6, 0, 0], 6 * n, natural_curvature=[0.8, -0.5], natural_twist=0.9
+            ),
             rod("b", [0.6, 0, 0], [0.6, 0.5, 0.3], 6 * n, natural_curvature=[-1.0, 1.2]),
         ],
         [joint("ab", at("a", "end"), at("b", "start"))],

@@ -5,12 +5,12 @@ Kirchhoff rod: s the rest length, r the place, (d1, d2, t) the section, n and m 
 moment that the part beyond s exerts on the part before it,
 
     r' = (1 + n . t / EA) t,    n' = -q,    m' = -r' x n,    d_i' = w x d_i
-    w = (m . d2 / EI1 + k1) d2 - (-m . d1 / EI2 + k2) d1 + (m . t / GJ) t
+    w = (m . d2 / EI1 + k1) d2 - (-m . d1 / EI2 + k2) d1 + (m . t / GJ + k3) t
 
-with a dead load q and natural curvatures k1, k2 towards the directors. Unknown are the place of
-each joint, the rotation of each group of rods that turn together, and (n, m) where each piece
-begins. The equations say that each piece ends at its joint with the joint's rotation, and that
-forces and moments of joints balance. Pieces are
+with a dead load q, natural curvatures k1, k2 towards the directors and a natural twist k3. Unknown
+are the place of each joint, the rotation of each group of rods that turn together, and (n, m) where
+each piece begins. The equations say that each piece ends at its joint with the joint's rotation,
+and that forces and moments of joints balance. Pieces are
 integrated in equal steps of the method of order 8 of Dormand and Prince. Derivatives are complex
 steps, and each iteration of Newton's method counts rotations from the last one.
 
@@ -323,6 +323,7 @@ class SpatialNetwork:
         self._EI_1 = each(lambda p: self.section_of(p.rod)[0])
         self._EI_2 = each(lambda p: self.section_of(p.rod)[1])
         self._GJ = each(lambda p: stiffness(p)["GJ"])
+        self._twist = each(lambda p: self.rods[p.rod].get("natural_twist", 0.0))
         self._natural = each(lambda p: self.natural(p.rod)).T
         self._drawn_bend = each(lambda p: self.lines[p.rod].curvatures()).T
         self._q = each(lambda p: p.load).T
@@ -348,7 +349,7 @@ class SpatialNetwork:
         natural = self._drawn_bend + level * (self._natural - self._drawn_bend)
         bend_1 = (m * d2).sum(axis=1, keepdims=True) / self._EI_1 + natural[0]
         bend_2 = -(m * d1).sum(axis=1, keepdims=True) / self._EI_2 + natural[1]
-        twist = (m * t).sum(axis=1, keepdims=True) / self._GJ
+        twist = (m * t).sum(axis=1, keepdims=True) / self._GJ + level * self._twist
         w = bend_1 * d2 - bend_2 * d1 + twist * t
         out[:, 0:3] = along
         out[:, 3:6] = _cross(w, d1)
@@ -498,6 +499,7 @@ class SpatialNetwork:
         values["curvature_1"] = moment_1 / EI_1 + natural[0]
         values["curvature_2"] = moment_2 / EI_2 + natural[1]
         values["twist"] = torque / self.rods[rod]["cross_section"]["stiffness"]["GJ"]
+        values["twist"] += self.rods[rod].get("natural_twist", 0.0)
         return values[quantity]
 
     def read(self, quantity: str, rod: str, at: Any, side: str = "after") -> float:

@@ -51,7 +51,7 @@ std::vector<Index> hinges(const Scenario& scenario) {
   const Model model = build_model(scenario.scene());
   std::vector<Index> nodes;
   for (const scenario::Joint& joint : scenario.scene().joints) {
-    if (joint.kind != scenario::JointKind::Hinge) continue;
+    if (joint.kind == scenario::JointKind::Rigid) continue;
     const RodMesh& rod = model.rod(joint.of.front().rod);
     nodes.push_back(rod.node(nodes_at(joint.of.front().at, rod).front()));
   }

@@ -52,8 +52,11 @@ void enter_tangent(HeldNode& held, const RodMesh& rod, Index place, const Replay
   const Clamp* clamp = rod.clamp_at(place);
   const Model& model = replay.model();
   if (model.dimension == 3) {
-    const Vec3 tangent = clamp == nullptr ? initial_tangent(rod, place, model)
-                                          : held_frame(clamp->held, model, replay.state()).tangent;
+    Vec3 tangent = clamp == nullptr ? initial_tangent(rod, place, model)
+                                    : held_frame(clamp->held, model, replay.state()).tangent;
+    if (const Index rotation = rod.rotation_at(place); rotation >= 0) {
+      tangent = joint_block(model, rotation).rotation(replay.state().followed) * tangent;
+    }
     held.tangent.assign(tangent.begin(), tangent.end());
     return;
   }

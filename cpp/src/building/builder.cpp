@@ -9,6 +9,7 @@
 #include "building/joints.hpp"
 #include "building/leg_elements.hpp"
 #include "building/load_variation.hpp"
+#include "building/spatial_leg_elements.hpp"
 #include "building/spatial_rod_elements.hpp"
 #include "der/building/rod_elements.hpp"
 #include "der/catalog/quantities.hpp"
@@ -87,9 +88,6 @@ std::vector<std::vector<Index>> place_nodes(const scenario::Scene& scene, bool w
     if (scene.rods[i].closed) model.dofs.close(nodes[i].front(), nodes[i].back());
   }
   model.initial_frames.setZero(FrameBlock::kSize * static_cast<Index>(edge_starts.size()));
-  model.natural_strain = NaturalStrain(static_cast<Index>(model.initial_frames.size()),
-                                       num_rest_entries(scene, model.dimension));
-  model.tables = TimeTables(model.natural_strain.end());
   const Index dofs = model.num_dofs();
   for (Vector* v : {&model.initial_positions, &model.reference_positions, &model.initial_velocities,
                     &model.mass.lumped, &model.damping, &model.gravity_force, &model.dead_force}) {
@@ -286,12 +284,20 @@ void lay_out_rods(const scenario::Scene& scene, std::vector<std::vector<Index>> 
     model.rods.push_back(std::move(layout));
   }
   model.dofs.set_length(size);
+}
+
+/// Behind the frames of edges and joints.
+void number_controls(const scenario::Scene& scene, Model& model) {
+  model.natural_strain = NaturalStrain(static_cast<Index>(model.initial_frames.size()),
+                                       num_rest_entries(scene, model.dimension));
+  model.tables = TimeTables(model.natural_strain.end());
   set_rest_entries(scene, model);
 }
 
 void check_spin_inertia(const Model& model) {
   for (const RodMesh& rod : model.rods) {
-    if (!model.has_sections() || rod.vertices.empty() || rod.spin_inertia > 0.0) continue;
+    const bool bends = !rod.vertices.empty() || (!rod.legs.empty() && rod.EI_1 > 0.0);
+    if (!model.has_sections() || !bends || rod.spin_inertia > 0.0) continue;
     throw Error(
         "model_error",
         "the sections of rod '" + rod.name +
@@ -335,13 +341,16 @@ Model build_model(const scenario::Scene& scene, LegOrder order) {
   lay_out_rods(scene, place_nodes(scene, with_sections, model), model);
   find_joints(scene, model);
   for (const auto& joint : scene.joints) add_hinge(joint, model);
+  number_controls(scene, model);
   find_force_nodes(scene, model);
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     add_support(scene.supports[i], i, model);
   }
   for (RodMesh& rod : model.rods) {
     const ElementCounts before = count_elements(model);
-    if (!rod.legs.empty()) {
+    if (!rod.legs.empty() && model.dimension == 3) {
+      add_spatial_leg_elements(rod, model);
+    } else if (!rod.legs.empty()) {
       add_leg_elements(rod, order == LegOrder::Fourth, model);
     } else if (model.dimension == 2) {
       add_rod_elements(rod, model);

@@ -1,5 +1,6 @@
 #include "building/joints.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,12 +10,14 @@
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/kinematics/section_frame.hpp"
+#include "der/model/frames.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
 #include "model/corner.hpp"
 #include "model/reference_edge.hpp"
 #include "scenario/rest_line.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
@@ -100,7 +103,7 @@ class Rotations {
   /// That of a rod at one of its nodes where a leg ends; -1: the rod needs none there.
   Index of(std::size_t rod, Index place, const RodPoints& points) {
     const RodMesh& mesh = model_.rods[rod];
-    if (mesh.EI == 0.0) return -1;
+    if (mesh.EI == 0.0 && mesh.EI_1 == 0.0) return -1;
     const int joint = points.joint[to_size(place)];
     const bool rigid =
         joint >= 0 && scene_.joints[to_size(joint)].kind == scenario::JointKind::Rigid;
@@ -108,10 +111,10 @@ class Rotations {
     const auto key = rigid ? std::tuple<Index, Index>(-1, joint)
                            : std::tuple<Index, Index>(static_cast<Index>(rod), place);
     const auto [known, is_new] = numbers_.emplace(key, static_cast<Index>(nodes_.size()));
-    if (is_new) nodes_.push_back(mesh.node(place));
+    if (is_new) nodes_.insert(nodes_.end(), model_.dimension == 3 ? 3 : 1, mesh.node(place));
     return known->second;
   }
-  /// The node of each rotation.
+  /// The node of each rotation, in space of each of its three coordinates.
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
 
  private:
@@ -121,8 +124,13 @@ class Rotations {
   std::vector<Index> nodes_;
 };
 
-/// Angle [rad] of the drawn tangent at an end of a leg: its outermost edge leans against it by half
-/// the turn from one node to the next.
+/// The part of the turn at the node next to an end of a leg by which its outermost edge leans
+/// against the drawn tangent at the end: half of the turn from one node to the next.
+double share_of_turn(const RodMesh& rod, Index edge, Index node) {
+  return 0.5 * rod.edge_length[to_size(edge)] / rod.voronoi_length(node);
+}
+
+/// Angle [rad] of the drawn tangent at an end of a leg.
 double tangent_direction(const RodMesh& rod, const Leg& leg, bool at_end, const Model& model) {
   const Index edge = at_end ? leg.last - 1 : leg.first;
   const Vec2 vector = reference_edge(rod, edge, model);
@@ -131,7 +139,7 @@ double tangent_direction(const RodMesh& rod, const Leg& leg, bool at_end, const 
   const Index node = at_end ? leg.last - 1 : leg.first + 1;
   const double turn =
       angle_between(reference_edge(rod, node - 1, model), reference_edge(rod, node, model));
-  const double half = 0.5 * rod.edge_length[to_size(edge)] * turn / rod.voronoi_length(node);
+  const double half = share_of_turn(rod, edge, node) * turn;
   return at_end ? direction + half : direction - half;
 }
 
@@ -142,6 +150,47 @@ double reference_turn(const RodMesh& rod, const Leg& leg, const Model& model) {
     turn += angle_between(reference_edge(rod, node - 1, model), reference_edge(rod, node, model));
   }
   return turn;
+}
+
+/// The drawn section at an end of a leg in space.
+SectionFrame section_at_end(const RodMesh& rod, const Leg& leg, bool at_end, const Model& model) {
+  const Index edge = at_end ? leg.last - 1 : leg.first;
+  Vec3 tangent = reference_edge<3>(rod, edge, model).normalized();
+  if (leg.last - leg.first > 1) {
+    const Index node = at_end ? leg.last - 1 : leg.first + 1;
+    const Vec3 before = reference_edge<3>(rod, node - 1, model);
+    const Vec3 after = reference_edge<3>(rod, node, model);
+    const Vec3 axis = before.cross(after);
+    const double sine = axis.norm();
+    if (sine > 0.0) {
+      const double half = share_of_turn(rod, edge, node) * std::atan2(sine, before.dot(after));
+      tangent = Eigen::AngleAxisd(at_end ? half : -half, axis / sine) * tangent;
+    }
+  }
+  return reference_section_at_end(rod, edge, at_end, tangent);
+}
+
+/// The first node of each edge that has an angle.
+std::vector<Index> edge_starts(const Model& model) {
+  std::vector<Index> starts;
+  for (const RodMesh& rod : model.rods) {
+    for (Index edge = 0; model.has_sections() && edge < rod.num_edges(); ++edge) {
+      starts.push_back(rod.node(edge));
+    }
+  }
+  return starts;
+}
+
+/// Enters the rotations of joints in space behind the frames of the edges.
+void draw_joints(Model& model) {
+  if (model.dimension != 3) return;
+  const Index frames = static_cast<Index>(model.initial_frames.size());
+  const Index joints = model.dofs.num_rotations() / 3;
+  model.initial_frames.conservativeResize(frames + JointBlock::kSize * joints);
+  for (Index joint = 0; joint < joints; ++joint) {
+    const Index first = joint_block(model, 3 * joint).first;
+    model.initial_frames.segment<JointBlock::kSize>(first) << 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0;
+  }
 }
 
 }  // namespace
@@ -174,20 +223,30 @@ void find_joints(const scenario::Scene& scene, Model& model) {
       if (place > 0) {
         leg.last = place;
         leg.end.rotation = rotation;
-        leg.start.direction = tangent_direction(rod, leg, false, model);
-        if (!rod.legs.empty()) {
-          leg.start.direction = nearest_turn(leg.start.direction, rod.legs.back().end.direction);
+        for (const bool at_end : {false, true}) {
+          LegEnd& end = at_end ? leg.end : leg.start;
+          if (model.dimension == 3) {
+            end.section = section_at_end(rod, leg, at_end, model);
+          } else {
+            // Whole turns count along the rod.
+            const double near =
+                at_end                  ? leg.start.direction + reference_turn(rod, leg, model)
+                : rod.legs.empty()      ? 0.0
+                                        : rod.legs.back().end.direction;
+            end.direction = nearest_turn(tangent_direction(rod, leg, at_end, model), near);
+          }
         }
-        leg.end.direction = nearest_turn(tangent_direction(rod, leg, true, model),
-                                         leg.start.direction + reference_turn(rod, leg, model));
         rod.legs.push_back(leg);
       }
-      leg = {place, place, {rotation, 0.0}, {}};
+      leg = {};
+      leg.first = leg.last = place;
+      leg.start.rotation = rotation;
     }
   }
   const double length = model.dofs.length();
-  model.dofs = DofMap(model.dimension, model.num_nodes, {}, rotations.nodes());
+  model.dofs = DofMap(model.dimension, model.num_nodes, edge_starts(model), rotations.nodes());
   model.dofs.set_length(length);
+  draw_joints(model);
   for (Vector* v : {&model.initial_positions, &model.reference_positions, &model.initial_velocities,
                     &model.mass.lumped, &model.damping, &model.gravity_force, &model.dead_force}) {
     v->conservativeResize(model.num_dofs());

@@ -423,7 +423,17 @@ void add_isotropic_bending(const RodMesh& rod, Model& model) {
   }
 }
 
-/// The frames of effective edges, which lie along these and not along the drawn edges.
+template <class Curvature>
+void add_bending(RodMesh& rod, Model& model) {
+  if (model.has_sections()) {
+    SectionElements<Curvature>(rod, model).add();
+  } else {
+    add_isotropic_bending<Curvature>(rod, model);
+  }
+}
+
+}  // namespace
+
 void draw_frames(const RodMesh& rod, Model& model) {
   for (Index i = 0; i < rod.num_edges(); ++i) {
     const SpatialEdge edge = spatial_edge(rod, i, model);
@@ -439,23 +449,11 @@ void draw_frames(const RodMesh& rod, Model& model) {
   }
 }
 
-/// Nothing turns the sections of a rod without vertices.
 void hold_angles(const RodMesh& rod, Model& model) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     model.held.push_back({model.dofs.angle(rod.first_edge + edge), -1});
   }
 }
-
-template <class Curvature>
-void add_bending(RodMesh& rod, Model& model) {
-  if (model.has_sections()) {
-    SectionElements<Curvature>(rod, model).add();
-  } else {
-    add_isotropic_bending<Curvature>(rod, model);
-  }
-}
-
-}  // namespace
 
 void add_spatial_rod_elements(RodMesh& rod, Model& model) {
   if (model.has_sections()) draw_frames(rod, model);

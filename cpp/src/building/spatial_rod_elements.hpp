@@ -8,4 +8,9 @@ namespace der {
 /// its layout and clamps, and sets its rest strains. Rods are taken in their order.
 void add_spatial_rod_elements(RodMesh& rod, Model& model);
 
+/// The frames of a rod's edges, as their elements see these: from pivot to pivot.
+void draw_frames(const RodMesh& rod, Model& model);
+/// Holds the angles of a rod whose sections nothing turns.
+void hold_angles(const RodMesh& rod, Model& model);
+
 }  // namespace der

@@ -116,15 +116,17 @@ Vec3 taken_by(const SpatialMoment::TurnedEdge& edge, const Vec3& moment, double 
 template <class Kind, class... Forces>
 constexpr bool kIsOneOf = (std::is_same_v<Kind, Forces> || ...);
 template <class Kind>
-constexpr bool kIsForce = kIsOneOf<Kind, PlanarFollowerForce, JointFollowerForce, FollowerForce,
-                                   HeldForce<1>, HeldForce<2>>;
+constexpr bool kIsForce =
+    kIsOneOf<Kind, PlanarFollowerForce, JointFollowerForce, SpatialJointFollowerForce,
+             FollowerForce, HeldForce<1>, HeldForce<2>>;
 
-/// The value that `f` has for a moment; a default for a force.
+/// The value that `f` has for a moment on edges; a default for a force, or a moment on a joint.
 template <class Result, class Kinds, class F>
 Result of_moment(const Kinds& kind, const F& f) {
   return std::visit(
       [&](const auto& load) {
-        if constexpr (kIsForce<std::decay_t<decltype(load)>>) {
+        using Load = std::decay_t<decltype(load)>;
+        if constexpr (kIsForce<Load> || std::is_same_v<Load, JointMoment>) {
           return Result{};
         } else {
           return Result(f(load));
@@ -154,6 +156,26 @@ void JointFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
   const Vec2 force = Eigen::Rotation2Dd(here.coordinates[rotation]) * amount.head<2>();
   out.force.head<2>() = force;
   out.tangent.block<2, 1>(0, 2) = -perpendicular(force);
+}
+
+void SpatialJointFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
+                                         CirculatoryTerm& out) const {
+  out.reset(size());
+  const JointTurn turn(joint, here.controls, here.coordinates.segment<3>(rotation));
+  const Vec3 force = turn.rotation() * amount;
+  out.force.head<3>() = force;
+  out.tangent.block<3, 3>(0, 3) = cross_matrix<double>(force) * turn.spin();
+}
+
+void JointMoment::evaluate(const Configuration& here, const Vec3& amount,
+                           CirculatoryTerm& out) const {
+  out.reset(size());
+  const JointTurn turn(joint, here.controls, here.coordinates.segment<3>(rotation));
+  const Vec3 moment = follower ? Vec3(turn.rotation() * amount) : amount;
+  const Mat3 spin = turn.spin();
+  out.force = spin.transpose() * moment;
+  out.tangent = -turn.force_gradient(moment);
+  if (follower) out.tangent += spin.transpose() * cross_matrix<double>(moment) * spin;
 }
 
 void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
@@ -261,7 +283,9 @@ void CirculatoryLoad::evaluate(const Configuration& here, CirculatoryTerm& out) 
 
 Vec3 CirculatoryLoad::force(const Configuration& here) const {
   Vec3 total = Vec3::Zero();
-  if (of_moment<bool>(kind, [](const auto&) { return true; })) return total;
+  const bool is_moment =
+      std::visit([](const auto& load) { return !kIsForce<std::decay_t<decltype(load)>>; }, kind);
+  if (is_moment) return total;
   CirculatoryTerm term;
   evaluate(here, term);
   if (std::holds_alternative<PlanarFollowerForce>(kind) ||

@@ -311,8 +311,14 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
     if (number < 0)
       throw Error("model_error", "rod '" + rod.name + "' turns no force: its EI is 0");
     const Index rotation = model.dofs.rotation(number);
-    load.coordinates.push_back({{rotation, 1.0}});
-    load.kind = JointFollowerForce{rotation};
+    for (Index c = 0; c < (model.dimension == 3 ? 3 : 1); ++c) {
+      load.coordinates.push_back({{rotation + c, 1.0}});
+    }
+    if (model.dimension == 3) {
+      load.kind = SpatialJointFollowerForce{rotation, joint_block(model, number)};
+    } else {
+      load.kind = JointFollowerForce{rotation};
+    }
     return add(std::move(load), model);
   }
   const SectionPlace place = section_place(s, rod);
@@ -332,6 +338,14 @@ void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, dou
                         Model& model) {
   CirculatoryLoad load;
   set_amount(moment, load, model);
+  if (!rod.legs.empty()) {
+    const Index number = rod.rotation_at(nearest_node(rod.arc_length, s));
+    const Index rotation = model.dofs.rotation(number);
+    for (Index c = 0; c < 3; ++c) load.coordinates.push_back({{rotation + c, 1.0}});
+    load.kind = JointMoment{rotation, joint_block(model, number), follower};
+    add(std::move(load), model);
+    return;
+  }
   const SectionPlace place = section_place(s, rod);
   if (follower) load.amount.actuated = actuated_section(s, place, rod, model);
   load.kind = moment_on_edges(follower, s, place, rod, model, load);

@@ -21,7 +21,10 @@ DofMap::DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts,
 }
 
 Dof DofMap::operator[](Index dof) const {
-  if (dof >= rotation(0)) return {DofKind::Rotation, dof - rotation(0), 0};
+  if (dof >= rotation(0)) {
+    const Index number = dof - rotation(0);
+    return {DofKind::Rotation, number, dimension_ == 3 ? static_cast<int>(number % 3) : 0};
+  }
   if (dof >= num_positions()) return {DofKind::Angle, dof - num_positions(), 0};
   return {DofKind::Position, dof / dimension_, dof % dimension_};
 }
@@ -55,20 +58,16 @@ void DofMap::number_free() {
   const auto number_positions = [&](Index node) {
     for (int c = 0; c < dimension_; ++c) number(position(node, c));
   };
-  // Rotations by their nodes.
-  std::vector<std::vector<Index>> rotations(num_rotations() > 0 ? to_size(num_nodes_) : 0);
+  // The rotations and angles of each node, in this order.
+  std::vector<std::vector<Index>> others(to_size(num_nodes_));
   for (Index i = 0; i < num_rotations(); ++i) {
-    rotations[to_size(rotation_nodes_[to_size(i)])].push_back(rotation(i));
+    others[to_size(rotation_nodes_[to_size(i)])].push_back(rotation(i));
   }
-  const Index edges = num_angles();
-  Index edge = 0;
+  for (Index i = 0; i < num_angles(); ++i) others[to_size(starts_[to_size(i)])].push_back(angle(i));
   for (Index node = 0; node < num_nodes_; ++node) {
     const auto begins = [node](const Ring& ring) { return ring.first_node == node; };
     if (std::none_of(rings_.begin(), rings_.end(), begins)) number_positions(node);
-    if (!rotations.empty()) {
-      for (const Index dof : rotations[to_size(node)]) number(dof);
-    }
-    for (; edge < edges && starts_[to_size(edge)] == node; ++edge) number(angle(edge));
+    for (const Index dof : others[to_size(node)]) number(dof);
     for (const Ring& ring : rings_) {
       if (ring.last_node == node) number_positions(ring.first_node);
     }

@@ -4,8 +4,9 @@ namespace der {
 
 void apply_prescribed_motion(const Model& model, const Vector& controls, Vector& positions) {
   for (const HeldDof& held : model.held) {
-    positions[held.dof] = model.initial_positions[held.dof] +
-                          (held.displacement >= 0 ? controls[held.displacement] : 0.0);
+    positions[held.dof] =
+        model.initial_positions[held.dof] +
+        (held.displacement >= 0 ? held.weight * controls[held.displacement] : 0.0);
   }
 }
 
@@ -19,7 +20,7 @@ double control_rate(const Model& model, const State& state, Index control, doubl
 double held_velocity(const Model& model, const State& state, const HeldDof& held, double time,
                      double mean) {
   if (held.displacement < 0) return mean;
-  return control_rate(model, state, held.displacement, time, mean);
+  return held.weight * control_rate(model, state, held.displacement, time, mean / held.weight);
 }
 
 void velocities_in_step(const Model& model, const State& state, const Vector& end, double dt,

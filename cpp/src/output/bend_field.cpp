@@ -312,14 +312,14 @@ std::unique_ptr<RodField> make_turning_angle_field(const RodMesh& rod, const Mod
 }
 
 std::unique_ptr<RodField> make_curvature_field(const RodMesh& rod, const Model& model) {
-  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Curvature, rod, model);
   if (model.dimension == 3) return make_section_field(SectionQuantity::Curvature, rod, model);
+  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Curvature, rod, model);
   return make_bend_field(Bending::Curvature, rod, model);
 }
 
 std::unique_ptr<RodField> make_moment_field(const RodMesh& rod, const Model& model) {
-  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Moment, rod, model);
   if (model.dimension == 3) return make_section_field(SectionQuantity::Moment, rod, model);
+  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Moment, rod, model);
   return make_bend_field(Bending::Moment, rod, model);
 }
 

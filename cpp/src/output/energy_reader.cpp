@@ -85,7 +85,9 @@ std::vector<Index> rod_dofs(const RodMesh& rod, const Model& model) {
   }
   for (const Leg& leg : rod.legs) {
     for (const Index rotation : {leg.start.rotation, leg.end.rotation}) {
-      if (rotation >= 0) dofs.push_back(model.dofs.rotation(rotation));
+      for (Index c = 0; rotation >= 0 && c < (model.dimension == 3 ? 3 : 1); ++c) {
+        dofs.push_back(model.dofs.rotation(rotation) + c);
+      }
     }
   }
   if (model.has_sections()) {

@@ -31,7 +31,9 @@ void HeldMotion::evaluate(const Model& model, const State& state) {
 HeldMotion::Rates HeldMotion::of(const HeldDof& held, const State& state) const {
   const Rates even{state.velocities[held.dof], 0.0};
   if (held.displacement < 0) return even;
-  return of_control(held.displacement, state).value_or(even);
+  const auto rates = of_control(held.displacement, state);
+  if (!rates) return even;
+  return {held.weight * rates->velocity, held.weight * rates->acceleration};
 }
 
 double HeldMotion::turning_rate(Index control, const Model& model, const State& state) const {

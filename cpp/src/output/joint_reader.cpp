@@ -6,9 +6,13 @@
 
 #include "der/catalog/quantities.hpp"
 #include "der/core/index.hpp"
+#include "der/kinematics/joint_turn.hpp"
+#include "der/model/followed.hpp"
+#include "der/model/frames.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/scenario.hpp"
 #include "output/leg_field.hpp"
+#include "output/spatial_leg_field.hpp"
 
 namespace der {
 namespace {
@@ -64,11 +68,54 @@ class AngleReader : public ProbeReader {
   TurnReader second_;
 };
 
+/// A component of the rotation vector of a joint in space, of up to half a turn.
+class RotationVectorReader : public ProbeReader {
+ public:
+  RotationVectorReader(Index rotation, Index component)
+      : rotation_(rotation), component_(component) {}
+  double value(const Model& model, const State& state) override {
+    const Index first = num_turns(model) + joint_block(model, rotation_).first;
+    const Vec3 w = state.positions.segment<3>(model.dofs.rotation(rotation_));
+    const JointBlock block{first};
+    const Eigen::Quaterniond now =
+        rotation_by(w - block.coordinates(state.followed)) * block.rotation(state.followed);
+    return rotation_vector(now)[component_];
+  }
+
+ private:
+  Index rotation_;
+  Index component_;
+};
+
+/// The field of what the rod behind a place exerts on the rod before it.
+std::unique_ptr<RodField> force_field(JointQuantity quantity, const RodMesh& rod,
+                                      const Model& model) {
+  using Spatial = SpatialLegQuantity;
+  const auto make = [&](Spatial in_space, LegQuantity in_plane) {
+    return model.dimension == 3 ? make_spatial_leg_field(in_space, rod, model)
+                                : make_leg_field(in_plane, rod, model);
+  };
+  switch (quantity) {
+    case JointQuantity::ForceX:
+      return make(Spatial::ForceX, LegQuantity::ForceX);
+    case JointQuantity::ForceY:
+      return make(Spatial::ForceY, LegQuantity::ForceY);
+    case JointQuantity::ForceZ:
+      return make_spatial_leg_field(Spatial::ForceZ, rod, model);
+    case JointQuantity::MomentX:
+      return make_spatial_leg_field(Spatial::MomentX, rod, model);
+    case JointQuantity::MomentY:
+      return make_spatial_leg_field(Spatial::MomentY, rod, model);
+    default:
+      return make(Spatial::MomentZ, LegQuantity::Moment);
+  }
+}
+
 /// The sum of what the legs of one rod exert at one of its nodes.
 class LegEndReader : public ProbeReader {
  public:
-  LegEndReader(LegQuantity quantity, const RodMesh& rod, Index place, const Model& model)
-      : field_(make_leg_field(quantity, rod, model)) {
+  LegEndReader(JointQuantity quantity, const RodMesh& rod, Index place, const Model& model)
+      : field_(force_field(quantity, rod, model)) {
     std::size_t first = 0;
     for (const Leg& leg : rod.legs) {
       const std::size_t last = first + to_size(leg.num_cells());
@@ -88,17 +135,6 @@ class LegEndReader : public ProbeReader {
   SampleWeights ends_;
 };
 
-LegQuantity leg_quantity(JointQuantity quantity) {
-  switch (quantity) {
-    case JointQuantity::ForceX:
-      return LegQuantity::ForceX;
-    case JointQuantity::ForceY:
-      return LegQuantity::ForceY;
-    default:
-      return LegQuantity::Moment;
-  }
-}
-
 }  // namespace
 
 std::unique_ptr<ProbeReader> make_joint_reader(const scenario::Probe& probe,
@@ -106,12 +142,18 @@ std::unique_ptr<ProbeReader> make_joint_reader(const scenario::Probe& probe,
                                                const scenario::Scene& scene, const Model& model) {
   const auto joint = std::find_if(scene.joints.begin(), scene.joints.end(),
                                   [&](const auto& other) { return other.name == *probe.joint; });
-  if (quantity.of_joint == JointQuantity::Rotation) {
+  if (is_rotation(quantity.of_joint)) {
     // A rod without bending stiffness does not follow the rotation.
     for (const auto& member : joint->of) {
       const RodMesh& rod = model.rod(member.rod);
       const Index rotation = rod.rotation_at(node_at(member.at, rod));
-      if (rotation >= 0) return std::make_unique<RotationReader>(model.dofs.rotation(rotation));
+      if (rotation < 0) continue;
+      if (quantity.of_joint == JointQuantity::Rotation) {
+        return std::make_unique<RotationReader>(model.dofs.rotation(rotation));
+      }
+      const auto component =
+          static_cast<Index>(quantity.of_joint) - static_cast<Index>(JointQuantity::RotationX);
+      return std::make_unique<RotationVectorReader>(rotation, component);
     }
     throw Error("model_error", "probe '" + probe.name + "': no rod of joint '" + joint->name +
                                    "' has a stiffness against bending: it has no rotation");
@@ -122,8 +164,7 @@ std::unique_ptr<ProbeReader> make_joint_reader(const scenario::Probe& probe,
   const auto member = std::find_if(joint->of.begin(), joint->of.end(),
                                    [&](const auto& each) { return each.rod == *probe.leg; });
   const RodMesh& rod = model.rod(member->rod);
-  return std::make_unique<LegEndReader>(leg_quantity(quantity.of_joint), rod,
-                                        node_at(member->at, rod), model);
+  return std::make_unique<LegEndReader>(quantity.of_joint, rod, node_at(member->at, rod), model);
 }
 
 }  // namespace der

@@ -80,7 +80,7 @@ class SpeedField : public NodeField {
 
 std::unique_ptr<RodField> make_component_field(Vector State::* vector, int component,
                                                const RodMesh& rod, const Model& model) {
-  if (vector == &State::positions && !rod.legs.empty()) {
+  if (vector == &State::positions && !rod.legs.empty() && model.dimension == 2) {
     return make_leg_place_field(component, rod, model);
   }
   return std::make_unique<ComponentField>(vector, component, rod, model);

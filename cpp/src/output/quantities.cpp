@@ -244,22 +244,44 @@ Quantity of_joint(JointQuantity what, std::string name, std::string unit, std::s
   Quantity quantity{std::move(name),    std::move(unit), QuantityKind::Joint,
                     std::move(meaning), nullptr,         {}};
   quantity.of_joint = what;
-  return in(QuantityScope::Planar, std::move(quantity), "joints are in scenes of two components");
+  return quantity;
+}
+
+Quantity rotation_in_space(JointQuantity what, const std::string& axis) {
+  return in(QuantityScope::Sections,
+            of_joint(what, "rotation_" + axis, "rad",
+                     axis + " component of the rotation vector of a rigid joint from the initial "
+                            "shape, of up to half a turn, in space"),
+            "in a plane take 'rotation'");
 }
 
 std::vector<Quantity> quantities_of_joints() {
   return {
-      of_joint(JointQuantity::Rotation, "rotation", "rad",
-               "rotation of a rigid joint from the initial shape, counter-clockwise, whole turns "
-               "included"),
-      of_joint(JointQuantity::Angle, "angle", "rad",
-               "by how much the second rod of a hinge of two has turned against the first from the "
-               "initial shape, counter-clockwise, whole turns included"),
+      in(QuantityScope::Planar,
+         of_joint(JointQuantity::Rotation, "rotation", "rad",
+                  "rotation of a rigid joint from the initial shape, counter-clockwise, whole "
+                  "turns included"),
+         "a rotation in space is a vector, take 'rotation_x', 'rotation_y' and 'rotation_z'"),
+      rotation_in_space(JointQuantity::RotationX, "x"),
+      rotation_in_space(JointQuantity::RotationY, "y"),
+      rotation_in_space(JointQuantity::RotationZ, "z"),
+      in(QuantityScope::Planar,
+         of_joint(JointQuantity::Angle, "angle", "rad",
+                  "by how much the second rod of a hinge of two has turned against the first from "
+                  "the initial shape, counter-clockwise, whole turns included"),
+         "a hinge is of scenes of two components"),
       of_joint(JointQuantity::ForceX, "force_x", "N",
                "x component of the force that a rod exerts on a joint"),
       of_joint(JointQuantity::ForceY, "force_y", "N", "y component of that force"),
+      in(QuantityScope::Sections,
+         of_joint(JointQuantity::ForceZ, "force_z", "N", "z component of that force, in space")),
+      in(QuantityScope::Sections,
+         of_joint(JointQuantity::MomentX, "moment_x", "N m",
+                  "x component of the moment that a rod exerts on a joint, in space")),
+      in(QuantityScope::Sections, of_joint(JointQuantity::MomentY, "moment_y", "N m",
+                                           "y component of that moment, in space")),
       of_joint(JointQuantity::MomentZ, "moment_z", "N m",
-               "moment that a rod exerts on a joint, counter-clockwise"),
+               "z component of that moment; in a plane the moment, counter-clockwise"),
   };
 }
 

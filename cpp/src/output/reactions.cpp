@@ -18,6 +18,7 @@
 #include "der/output/vertex_strain.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/supports/bearing.hpp"
+#include "der/supports/spring.hpp"
 #include "output/acting_elements.hpp"
 #include "output/held_motion.hpp"
 #include "output/in_space.hpp"
@@ -77,6 +78,7 @@ class Reactions::Reader {
     std::optional<Turning> turning;
     Index rotation = -1;              // degree of freedom of a joint's rotation that it holds
     double rotational_stiffness = 0;  // of springs on that rotation, which it does not hold
+    std::optional<SpatialJointSpring::Constants> joint_spring;  // the same in space
   };
 
   void add_place(const scenario::Scene& scene, std::size_t number, double s, const Model& model);
@@ -206,7 +208,11 @@ void Reactions::Reader::add_spring(const scenario::Scene& scene, std::size_t num
   if (spring.rotational_stiffness.empty()) return;
   if (!rod.legs.empty()) {
     place.rotation = model.dofs.rotation(rod.rotation_at(place.nodes.front().place));
-    place.rotational_stiffness = spring.rotational_stiffness[0];
+    if (model.dimension == 3) {
+      place.joint_spring = joint_spring(spring, s, rod, model);
+    } else {
+      place.rotational_stiffness = spring.rotational_stiffness[0];
+    }
     return;
   }
   const auto is_here = [&](const auto& other) {
@@ -255,7 +261,9 @@ void Reactions::Reader::choose_elements(const Model& model) {
   std::vector<bool> read(to_size(model.num_dofs()), false);
   for (const Place& place : places_) {
     for (const HeldDof& held : place.held) read[to_size(held.dof)] = true;
-    if (place.rotation >= 0) read[to_size(place.rotation)] = true;
+    for (Index c = 0; place.rotation >= 0 && c < (model.dimension == 3 ? 3 : 1); ++c) {
+      read[to_size(place.rotation + c)] = true;
+    }
   }
   elements_ = ActingElements(model, [&](Index dof) { return read[to_size(dof)]; });
 }
@@ -466,6 +474,12 @@ const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, con
       reaction.moment = moments_[first_clamps_[place.rod] + to_size(place.clamp)];
     if (place.rotational_stiffness > 0.0) {
       reaction.moment.z() = -place.rotational_stiffness * state.positions[place.rotation];
+    } else if (place.joint_spring) {
+      const JointTurn turn(place.joint_spring->section.joint, here_.controls,
+                           state.positions.segment<3>(place.rotation));
+      reaction.moment = -SpatialJointSpring::respond<false>(*place.joint_spring, turn).moment;
+    } else if (place.rotation >= 0 && model.dimension == 3) {
+      reaction.moment = gradient_.segment<3>(place.rotation) - force_.segment<3>(place.rotation);
     } else if (place.rotation >= 0) {
       reaction.moment.z() = gradient_[place.rotation] - force_[place.rotation];
     }

@@ -108,9 +108,8 @@ void Recorder::hand_out(const Model& model, const State& state) {
                     state.velocities.head(positions),
                     state.positions.segment(positions, angles),
                     state.velocities.segment(positions, angles),
-                    state.followed.tail(model.initial_frames.size()),
-                    model.has_rotations() ? state.positions.tail(model.dofs.num_rotations())
-                                          : state.followed.head(num_turns(model)),
+                    edge_frames(model, state.followed),
+                    saved_turns(model, state),
                     *energies_,
                     state.work,
                     values_};

@@ -69,15 +69,12 @@ void Replay::go_to(std::size_t frame, const SavedFrames& frames) {
   state_.velocities.head(nodes) = frames.velocities.row(row);
   state_.positions.segment(nodes, frames.theta.cols()) = frames.theta.row(row);
   if (frame == 0) state_.followed = unwrapped_of_reference(model_);
-  if (model_.has_rotations()) {
-    state_.positions.tail(model_.dofs.num_rotations()) = frames.turns.row(row);
-  } else {
-    // Edges that are followed for the slopes alone come last.
-    state_.followed.head(frames.turns.cols()) = frames.turns.row(row);
-  }
+  const Vector turns = frames.turns.row(row);
+  if (model_.dimension == 2) restore_turns(model_, turns, state_);
   follow(model_, state_);
   // Frames depend on the way of the rod, which is not saved, so that they are.
-  state_.followed.tail(frames.section_frames.cols()) = frames.section_frames.row(row);
+  edge_frames(model_, state_.followed) = frames.section_frames.row(row).transpose();
+  if (model_.dimension == 3) restore_turns(model_, turns, state_);
 }
 
 RodSeries Replay::along(const std::string& rod, const std::string& quantity,
@@ -99,7 +96,7 @@ ReactionSeries Replay::reactions(const SavedFrames& frames,
   ReactionSeries series;
   for (Eigen::Index frame = 0; frame < frames.positions.rows(); ++frame) {
     go_to(static_cast<std::size_t>(frame), frames);
-    state_.velocities.tail(spin.cols()) = spin.row(frame);
+    state_.velocities.segment(model_.dofs.num_positions(), spin.cols()) = spin.row(frame);
     series.places = reader.evaluate(model_, state_);
     const auto columns = 3 * static_cast<Eigen::Index>(series.places.size());
     for (FrameTable* table : {&series.points, &series.forces, &series.moments}) {

@@ -22,6 +22,7 @@
 #include "output/edgewise_field.hpp"
 #include "output/leaning_edge.hpp"
 #include "output/moment_recovery.hpp"
+#include "output/spatial_leg_field.hpp"
 #include "output/spin_torque.hpp"
 
 namespace der {
@@ -744,6 +745,7 @@ bool is_towards_director(SectionQuantity quantity) {
 
 std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodMesh& rod,
                                              const Model& model) {
+  if (!rod.legs.empty()) return make_spatial_leg_field(quantity, rod, model);
   return SectionField::make(quantity, rod, model);
 }
 

@@ -250,11 +250,10 @@ bool follows_edges_of(const LastFrame& last, const Model& model) {
 /// Takes over whole turns if that run followed the same edges; else they count from its shape.
 /// Angles of edges count from the frames of sections, which come with them.
 void take_over_turns(const LastFrame& last, const Model& model, State& state) {
-  if (model.has_rotations() && last.turns.size() == model.dofs.num_rotations()) {
-    state.positions.tail(last.turns.size()) = last.turns;
-    return;
+  if (last.section_frames.size() > 0) edge_frames(model, state.followed) = last.section_frames;
+  if (model.has_rotations() && last.turns.size() == num_saved_turns(model)) {
+    return restore_turns(model, last.turns, state);
   }
-  state.followed.tail(last.section_frames.size()) = last.section_frames;
   if (!follows_edges_of(last, model)) return follow_written(model, state);
   state.followed.head(last.turns.size()) = last.turns;
   follow(model, state);

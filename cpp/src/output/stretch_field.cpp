@@ -17,6 +17,7 @@
 #include "output/leg_field.hpp"
 #include "output/line_loads.hpp"
 #include "output/rod_field.hpp"
+#include "output/spatial_leg_field.hpp"
 #include "output/spread_forces.hpp"
 #include "output/stretch_samples.hpp"
 
@@ -206,12 +207,18 @@ class StretchField : public RodField {
 }  // namespace
 
 std::unique_ptr<RodField> make_strain_field(const RodMesh& rod, const Model& model) {
-  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Strain, rod, model);
+  if (!rod.legs.empty()) {
+    return model.dimension == 3 ? make_spatial_leg_field(SpatialLegQuantity::Strain, rod, model)
+                                : make_leg_field(LegQuantity::Strain, rod, model);
+  }
   return StretchField::make(false, rod, model);
 }
 
 std::unique_ptr<RodField> make_tension_field(const RodMesh& rod, const Model& model) {
-  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Tension, rod, model);
+  if (!rod.legs.empty()) {
+    return model.dimension == 3 ? make_spatial_leg_field(SpatialLegQuantity::Tension, rod, model)
+                                : make_leg_field(LegQuantity::Tension, rod, model);
+  }
   return StretchField::make(true, rod, model);
 }
 

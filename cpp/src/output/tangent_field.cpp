@@ -1,5 +1,6 @@
 #include "output/tangent_field.hpp"
 #include "output/leg_field.hpp"
+#include "output/spatial_leg_field.hpp"
 
 #include <cmath>
 #include <optional>
@@ -462,6 +463,11 @@ std::unique_ptr<RodField> make_slope_field(const RodMesh& rod, const Model& mode
 }
 
 std::unique_ptr<RodField> make_tangent_field(int number, const RodMesh& rod, const Model& model) {
+  if (!rod.legs.empty() && model.dimension == 3) {
+    constexpr std::array components{SpatialLegQuantity::TangentX, SpatialLegQuantity::TangentY,
+                                    SpatialLegQuantity::TangentZ};
+    return make_spatial_leg_field(components[to_size(number)], rod, model);
+  }
   if (!rod.legs.empty()) {
     return make_leg_field(number == 0 ? LegQuantity::TangentX : LegQuantity::TangentY, rod, model);
   }

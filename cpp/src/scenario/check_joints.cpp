@@ -110,6 +110,10 @@ class JointCheck {
              "or remove it");
       return;
     }
+    if (joint.kind == JointKind::Ball) {
+      report(path, "this version has it between the rods of a hinge alone: remove it");
+      return;
+    }
     if (members.size() != 2) {
       report(path, fmt::format("acts between two rods, and {} meet in this hinge", members.size()));
       return;
@@ -171,13 +175,16 @@ class JointedSceneCheck {
 
   void run() {
     const SceneText& scene = context_.scene;
-    if (context_.diagnostics.dimension() == 3) {
-      report({"joints"},
-             "joints are in scenes of two components: write the points and vectors of "
-             "the scene with x and y alone");
+    const bool in_space = context_.diagnostics.dimension() == 3;
+    for (int i = 0; i < static_cast<int>(scene.joints.size()) && !in_space; ++i) {
+      if (scene.joints[static_cast<std::size_t>(i)].kind != JointKind::Ball) continue;
+      report(joint_path(i) / "kind", "in a plane a ball is a hinge: write 'hinge'");
     }
-    if (scene.model == ModelChoice::Spatial || scene.model == ModelChoice::SpatialBend) {
-      lacks({"model"}, "a model in space");
+    if (in_space) check_in_space();
+    const ModelChoice needed = in_space ? ModelChoice::Spatial : ModelChoice::Planar;
+    if (scene.model != ModelChoice::Auto && scene.model != needed) {
+      lacks({"model"}, fmt::format("'{}' with {} components", name_of(scene.model),
+                                   in_space ? "three" : "two"));
     }
     for (int i = 0; i < static_cast<int>(scene.rods.size()); ++i) {
       check_rod(scene.rods[static_cast<std::size_t>(i)], {"rods", i});
@@ -235,8 +242,33 @@ class JointedSceneCheck {
     context_.nodes_at(rod->second, at, path, true);
   }
 
+  /// Reports what joints in space lack besides.
+  void check_in_space() {
+    const SceneText& scene = context_.scene;
+    for (int i = 0; i < static_cast<int>(scene.joints.size()); ++i) {
+      const Joint& joint = scene.joints[static_cast<std::size_t>(i)];
+      if (joint.kind == JointKind::Hinge) {
+        lacks(joint_path(i) / "kind", "a hinge in space, but a 'ball',");
+      }
+    }
+    for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
+      const Support& support = scene.supports[static_cast<std::size_t>(i)];
+      const Path path{"supports", i};
+      if (support.clamp == Clamp::Tangent) lacks(path / "clamp", "'clamp: tangent' in space");
+      if (support.axis_rotation && support.twist) {
+        lacks(path / "prescribe", "a clamp in space with a 'rotation' and a 'twist'");
+      }
+    }
+    if (!scene.actuations.empty()) lacks({"actuation"}, "actuations in space");
+    if (std::holds_alternative<BucklingAnalysis>(scene.analysis)) {
+      lacks({"analysis"}, "linear buckling in space");
+    }
+  }
   void check_rod(const Rod& rod, const Path& path) {
     if (rod.closed) lacks(path / "closed", "a closed rod");
+    if (context_.diagnostics.dimension() == 3 && damping_of(rod).any()) {
+      lacks(path, "internal damping in space");
+    }
   }
   void lacks(const Path& where, const std::string& what) {
     report(where, fmt::format("this version does not have {} in a scene with joints", what));

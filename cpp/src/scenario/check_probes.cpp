@@ -126,12 +126,12 @@ class ProbeCheck {
       report(path_ / "quantity",
              fmt::format("'{}' is of a hinge of two rods, which joint '{}' is not", probe_.quantity,
                          joint->name));
-    } else if (quantity == JointQuantity::Rotation) {
+    } else if (is_rotation(quantity)) {
       if (joint->kind == JointKind::Rigid) return;
       report(path_ / "quantity",
-             fmt::format("each rod has its own rotation in hinge '{}': take the 'slope' of a rod "
-                         "there",
-                         joint->name));
+             fmt::format("each rod has its own rotation in {} '{}': take {} of a rod there",
+                         in_words(joint->kind), joint->name,
+                         joint->kind == JointKind::Ball ? "'tx', 'ty' and 'tz'" : "the 'slope'"));
     } else if (!probe_.leg) {
       report(path_, fmt::format("'{}' is what one rod exerts on the joint: give 'leg', its name",
                                 probe_.quantity));

@@ -94,11 +94,8 @@ std::string warning_of(const CheckContext& context, const Node& a, const Node& b
       "were "
       "not there. {}, or move them apart if that is what you mean",
       in_words(context, a), in_words(context, b), place,
-      context.diagnostics.dimension() == 2
-          ? fmt::format("To join them write 'joints: [{{name: corner, of: [{}, {}]}}]'",
-                        as_member(context, a), as_member(context, b))
-          : "Joints are in scenes of two components so far: draw both as one rod with 'points', "
-            "hold both by supports");
+      fmt::format("To join them write 'joints: [{{name: corner, of: [{}, {}]}}]'",
+                  as_member(context, a), as_member(context, b)));
 }
 
 class TouchFinder {

@@ -21,21 +21,19 @@ Format<HingeSpring> spring_format() {
 
 Format<Joint> joint_format() {
   return mapping(
-      Table<Joint>("joint", "Joins rods that meet at a point. In scenes of two components.")
+      Table<Joint>("joint", "Joins rods that meet at a point.")
           .required("name", &Joint::name, name(), "Name of the joint.")
           .required("of", &Joint::of, list_of(member_format(), 2),
                     "The rods that meet, each at its place.")
-          .optional("kind", &Joint::kind,
-                    choice<JointKind>(
-                        {{{"rigid", "the rods keep the angles between them, as if welded"},
-                          JointKind::Rigid},
-                         {{"hinge", "each rod turns freely about the others"}, JointKind::Hinge}},
-                        {{"ball", "in a plane a ball is a hinge: write 'hinge'"}}),
-                    "How they are joined.")
-          .optional("spring", &Joint::spring, spring_format(),
-                    "Only with `kind: hinge`, between two rods: a spring that turns with them.")
-          .optional("damping", &Joint::damping, number("N m s/rad", not_negative()),
-                    "Likewise: moment per rate of the angle between the two.", "0"));
+          .optional(
+              "kind", &Joint::kind,
+              choice<JointKind>({{{"rigid", "the rods keep the angles between them, as if welded"},
+                                  JointKind::Rigid},
+                                 {{"hinge", "each rod turns freely about the others, in a plane"},
+                                  JointKind::Hinge},
+                                 {{"ball", "each rod turns freely about the others, in space"},
+                                  JointKind::Ball}}),
+              "How they are joined."));
 }
 
 }  // namespace der::scenario

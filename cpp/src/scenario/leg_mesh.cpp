@@ -158,6 +158,12 @@ void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, doubl
   auto* curvatures = std::get_if<std::vector<double>>(&rod.natural_curvature);
   const std::vector<double> natural = curvatures != nullptr ? *curvatures : std::vector<double>();
   if (curvatures != nullptr) curvatures->resize(rod.points.size(), natural.back());
+  auto* pairs = std::get_if<std::vector<CurvaturePair>>(&rod.natural_curvature);
+  const auto natural_pairs = pairs != nullptr ? *pairs : std::vector<CurvaturePair>();
+  if (pairs != nullptr) pairs->resize(rod.points.size(), natural_pairs.back());
+  auto* twists = std::get_if<std::vector<double>>(&rod.natural_twist);
+  const std::vector<double> natural_twist = twists != nullptr ? *twists : std::vector<double>();
+  if (twists != nullptr) twists->resize(rod.points.size(), natural_twist.back());
   std::size_t node = 0;
   for (std::size_t leg = 0; leg < cells.size(); ++leg) {
     for (int k = 1; k <= cells[leg]; ++k) {
@@ -167,6 +173,12 @@ void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, doubl
         point[c] = text.from[c] + s / length * (text.to[c] - text.from[c]);
       }
       if (curvatures != nullptr) (*curvatures)[node] = even.value(natural, s);
+      if (twists != nullptr) (*twists)[node] = even.value(natural_twist, s);
+      if (pairs != nullptr) {
+        (*pairs)[node] = {
+            even.value(natural_pairs, s, [](const CurvaturePair& each) { return each.first; }),
+            even.value(natural_pairs, s, [](const CurvaturePair& each) { return each.second; })};
+      }
       for (std::size_t c = 0; c < point.size() && !velocities.empty(); ++c) {
         rod.initial_velocity[node][c] =
             even.value(velocities, s, [c](const Components& each) { return each[c]; });
@@ -219,12 +231,13 @@ void name_members(CheckContext& context) {
   };
   const auto need_rigid = [&](const Joint* joint, const Path& path) {
     if (joint == nullptr || joint->kind == JointKind::Rigid) return;
-    context.diagnostics.add(path, fmt::format("each rod has its own rotation in hinge '{}': write "
+    context.diagnostics.add(path, fmt::format("each rod has its own rotation in {} '{}': write "
                                               "the 'rod' and 'at' in place of 'joint'",
-                                              joint->name));
+                                              in_words(joint->kind), joint->name));
   };
   const auto need_sides = [&](const Joint* joint, const Path& path) {
-    if (joint == nullptr || joint->kind == JointKind::Rigid || joint->of.size() == 2) return;
+    if (joint == nullptr || joint->kind != JointKind::Hinge) return need_rigid(joint, path);
+    if (joint->of.size() == 2) return;
     context.diagnostics.add(
         path, fmt::format("a moment acts between two rods, and {} meet in hinge '{}': write the "
                           "'rod' and 'at' of each on which one acts",

@@ -359,6 +359,9 @@ std::string why_not(ModelChoice kind, const Scene& scene) {
 
 ChosenModel choose_model(const Scene& scene) {
   if (scene.model != ModelChoice::Auto) return {scene.model, "asked for by the scene"};
+  if (scene.in_space && !scene.joints.empty()) {
+    return {ModelChoice::Spatial, "the scene has joints and vectors of three components"};
+  }
   const std::string planar = why_not_planar_by_itself(scene);
   if (planar.empty()) {
     return {ModelChoice::Planar, "every position, force and support lies in the x-y plane"};

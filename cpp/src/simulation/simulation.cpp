@@ -158,6 +158,7 @@ void Simulation::settle_rotations(JointRotations::Which which) {
   Configuration here;
   evaluate_controls(model_, state_, state_.time, here.controls);
   JointRotations(model_, which).settle(here.controls, state_.extra_force, state_.positions);
+  if (model_.has_sections()) der::follow(model_, state_);
   here.coordinates = state_.positions;
   JointRotations(model_).set_rates(here, state_.extra_force, state_.velocities);
 }

@@ -42,7 +42,7 @@ template <class Use>
 void JointRotations::for_each_element(const Use& use) const {
   for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    if constexpr (NumJoints<Kernel>::value > 0) {
+    if constexpr (NumJoints<Kernel>::value > 0 && NumJoints<Kernel>::value < 3) {
       for (std::size_t e = 0; e < list.size(); ++e)
         use(list, e, rotations_of<Kernel>(list.dofs[e]));
     }
@@ -92,6 +92,10 @@ void JointRotations::find_lagging(const Model& model) {
 JointRotations::JointRotations(const Model& model, Which which) : model_(model) {
   const DofMap& dofs = model.dofs;
   find_lagging(model);
+  if (model.dimension == 3 && model.has_rotations()) {
+    in_space_ = std::make_unique<SpatialJointRotations>(model);
+    return;
+  }
   for (Index i = 0; i < dofs.num_rotations(); ++i) {
     const bool is_free = dofs.is_free(dofs.rotation(i));
     any_lags_ = any_lags_ || (is_free && lags_[to_size(i)]);
@@ -227,6 +231,7 @@ bool JointRotations::take(Vector& coordinates) const {
 
 double JointRotations::settle(const Vector& controls, const Vector& extra_force,
                               Vector& coordinates) {
+  if (in_space_) return in_space_->settle(controls, extra_force, coordinates);
   double work = 0.0;
   if (free_.empty()) return work;
   here_.controls = controls;

@@ -143,6 +143,11 @@ class RigidMotions {
       }
     }
     if constexpr (Dimension == 3) {
+      for (Index i = 0; i < model_.dofs.num_rotations(); i += 3) {
+        const Index rotation = model_.dofs.rotation(i);
+        if (part_[to_size(model_.dofs.node_of(rotation))] != first_) continue;
+        columns_.template block<3, 3>(rotation, Dimension) = Mat3::Identity() / model_.size();
+      }
       for (const SpatialEdge& edge : model_.framed_edges) {
         if (part_[to_size(model_.dofs.node_of(edge.start))] != first_) continue;
         const Vec3 tangent = edge.vector(here.coordinates, here.controls).normalized();

@@ -29,6 +29,7 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
   apply_prescribed_motion(model_, controls_, result.positions);
   if (model_.has_sections()) follow(model_, result);
   rotations_.settle(controls_, end.extra_force, result.positions);
+  if (model_.has_sections() && model_.has_rotations()) follow(model_, result);
 
   Work work_start = start.work;
   for (const HeldDof& held : model_.held) {

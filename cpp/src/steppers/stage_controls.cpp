@@ -142,7 +142,7 @@ double StageControls::velocity(const HeldDof& held, double mean) const {
   const auto motion = std::find_if(motions_.begin(), motions_.end(), [&](const Motion& other) {
     return other.control == held.displacement;
   });
-  return motion == motions_.end() ? mean : motion->rate[to_size(stage_)];
+  return motion == motions_.end() ? mean : held.weight * motion->rate[to_size(stage_)];
 }
 
 }  // namespace der

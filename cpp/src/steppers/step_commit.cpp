@@ -74,6 +74,7 @@ void StepCommit::move_rotations(double dt, State& state) {
     state.work.drag += works.drag;
   } else {
     state.work.loads += rotations_.settle(end_.controls, state.extra_force, state.positions);
+    if (model_.has_sections()) follow(model_, state.positions, end_.controls, state.followed);
     end_.coordinates = state.positions;
     lagging_.set_rates(end_, state.extra_force, state.velocities);
   }

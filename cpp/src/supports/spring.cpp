@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "der/core/index.hpp"
+#include "der/core/nearest_node.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/joint_spring.hpp"
 #include "der/energies/point_spring.hpp"
 #include "der/energies/rotational_spring.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/model/dimension.hpp"
+#include "der/model/frames.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/scenario/support.hpp"
@@ -145,6 +147,20 @@ double natural_turn_of_edges(const RodMesh& rod, const MomentPlace& place, const
   return turn - natural_turn_from_line(s, place.first_edge, rod).z();
 }
 
+SpatialJointSpring::Constants joint_spring(const scenario::Spring& spring, double s,
+                                           const RodMesh& rod, const Model& model) {
+  const Index place = nearest_node(rod.arc_length, s);
+  SpatialJointSpring::Constants c;
+  c.stiffness = Eigen::Map<const Vec3>(spring.rotational_stiffness.data());
+  for (const Leg& leg : rod.legs) {
+    for (const auto& [at, end] : {std::pair(leg.last, &leg.end), {leg.first, &leg.start}}) {
+      if (at != place || end->rotation < 0) continue;
+      c.section = {end->section, joint_block(model, end->rotation)};
+    }
+  }
+  return c;
+}
+
 void add_spring(const scenario::Support& support, Model& model) {
   const scenario::Spring& spring = *support.spring;
   RodMesh& rod = model.rod(support.rod);
@@ -157,8 +173,13 @@ void add_spring(const scenario::Support& support, Model& model) {
   if (spring.rotational_stiffness.empty()) return;
   if (const Index rotation = rod.legs.empty() ? -1 : rod.rotation_at(node_at(support.at, rod));
       rotation >= 0) {
-    elements_of<JointSpring>(*model.elements)
-        .add({model.dofs.rotation(rotation)}, {spring.rotational_stiffness[0]});
+    const Index first = model.dofs.rotation(rotation);
+    if (model.dimension == 3) {
+      elements_of<SpatialJointSpring>(*model.elements)
+          .add({first, first + 1, first + 2}, joint_spring(spring, s, rod, model));
+    } else {
+      elements_of<JointSpring>(*model.elements).add({first}, {spring.rotational_stiffness[0]});
+    }
   } else if (model.dimension == 2) {
     place_of_moments(s, rod).stiffness += spring.rotational_stiffness[0];
   } else {

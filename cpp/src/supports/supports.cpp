@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::array<const char*, 3> kComponentNames{"x", "y", "z"};
 
-void hold(Model& model, Index dof, Index displacement) {
+void hold(Model& model, Index dof, Index displacement, double weight = 1.0) {
   const auto known = std::find_if(model.held.begin(), model.held.end(),
                                   [&](const HeldDof& held) { return held.dof == dof; });
-  if (known == model.held.end()) model.held.push_back({dof, displacement});
+  if (known == model.held.end()) model.held.push_back({dof, displacement, weight});
 }
 
 /// The components that a support moves, each with the controls of all its nodes.
@@ -41,6 +41,28 @@ NamedControl named_motion(const std::string& name, std::size_t number, const Mod
   return result;
 }
 
+/// Holds the rotation of a joint in space, or turns it about an axis that keeps its direction.
+void hold_joint(const scenario::Support& support, std::size_t number, Index place,
+                const RodMesh& rod, Model& model) {
+  const Index rotation = rod.rotation_at(place);
+  if (rotation < 0) return;
+  Vec3 axis = Vec3::Zero();
+  Index control = -1;
+  if (support.axis_rotation) {
+    axis = Eigen::Map<const Vec3>(support.axis_rotation->axis.data()).stableNormalized();
+    control = model.tables.add(support.axis_rotation->angle);
+  } else if (support.twist) {
+    axis = initial_tangent(rod, place, model);
+    control = model.tables.add(*support.twist);
+  }
+  for (Index c = 0; c < 3; ++c) {
+    const bool turns = axis[c] != 0.0;
+    hold(model, model.dofs.rotation(rotation) + c, turns ? control : -1, turns ? axis[c] : 1.0);
+  }
+  if (control >= 0)
+    model.prescribed.push_back({number, support.twist ? "twist" : "angle", control});
+}
+
 /// Holds or moves the nodes of a support.
 void hold_nodes(const scenario::Support& support, std::size_t number, Model& model) {
   RodMesh& rod = model.rod(support.rod);
@@ -57,6 +79,10 @@ void hold_nodes(const scenario::Support& support, std::size_t number, Model& mod
     }
     if (support.clamps()) {
       for (int c = 0; c < model.dimension; ++c) hold(model, model.dof(node, c), -1);
+      if (!rod.legs.empty() && model.dimension == 3) {
+        hold_joint(support, number, place, rod, model);
+        continue;
+      }
       if (model.dimension == 3) {
         hold_section(support, place, rod, model);
         if (const Clamp* clamp = rod.clamp_at(place); clamp != nullptr) {

@@ -153,7 +153,7 @@ double angle_of(Index edge, const Model& model, const State& state) {
 }  // namespace
 
 void follow_written(const Model& model, State& state) {
-  if (model.has_rotations()) count_rotations(model, state.positions);
+  if (model.has_rotations() && model.dimension == 2) count_rotations(model, state.positions);
   if (state.followed.size() == 0) return;
   Vector controls;
   evaluate_controls(model, state, state.time, controls);

@@ -158,6 +158,27 @@ LoadedEdges<2> sample_planar(Shape shape, Random& random) {
   return sample;
 }
 
+/// A joint that has turned by up to 1.7 rad since the start of the step, with a load that acts
+/// there.
+template <class Kind>
+LoadedEdges<3> sample_at_joint(Kind kind, Random& random) {
+  LoadedEdges<3> sample = sample_edges(Shape::Arbitrary, random);
+  Configuration& here = sample.here;
+  const auto rotation = static_cast<Index>(here.coordinates.size());
+  here.coordinates.conservativeResize(rotation + 3);
+  here.coordinates.tail<3>() = direction(random);
+  kind.rotation = rotation;
+  kind.joint.first = kJoints;
+  here.controls.segment<3>(kJoints) =
+      here.coordinates.tail<3>() - uniform(random, 0.0, 1.7) * direction(random);
+  const Eigen::Quaterniond base = rotation_by(3.0 * direction(random));
+  here.controls.segment<4>(kJoints + 3) << base.w(), base.vec();
+  if (kind.size() == 6) sample.add_point();
+  for (Index c = 0; c < 3; ++c) sample.load.coordinates.push_back({{rotation + c, 1.0}});
+  sample.load.kind = kind;
+  return sample;
+}
+
 Vector forces_of(const CirculatoryLoad& load, const Configuration& here) {
   Vector total = Vector::Zero(here.coordinates.size());
   add_circulatory_forces({load}, here, 1.0, total);
@@ -200,6 +221,9 @@ TEST_CASE("circulatory loads: tangents are the derivatives of the forces") {
     for (int i = 0; i < kSamples; ++i) {
       check_tangent(sample_planar(shape, random), h);
       check_tangent(sample_force(shape, random), h);
+      check_tangent(sample_at_joint(SpatialJointFollowerForce{}, random), h);
+      check_tangent(sample_at_joint(JointMoment{0, {}, false}, random), h);
+      check_tangent(sample_at_joint(JointMoment{0, {}, true}, random), h);
       check_tangent(sample_moment(false, shape, random), h);
       check_tangent(sample_moment(true, shape, random), h);
       for (const bool before : {false, true}) {

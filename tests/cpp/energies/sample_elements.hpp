@@ -25,7 +25,8 @@ enum Control : Index {
   kTurn,
   kElongation,
   kStrains,
-  kNumControls = kStrains + 3
+  kJoints = kStrains + 3,  ///< blocks of two joints in space
+  kNumControls = kJoints + 2 * JointBlock::kSize
 };
 
 inline Vec3 direction(Random& random) {
@@ -45,7 +46,7 @@ inline Configuration sample_configuration(Random& random) {
   here.controls[kRotation] = uniform(random, -1.0, 1.0);
   here.controls[kTurn] = uniform(random, -1.0, 1.0);
   here.controls[kElongation] = uniform(random, -0.1, 0.1);
-  for (Index i = kStrains; i < kNumControls; ++i) here.controls[i] = uniform(random, -0.5, 0.5);
+  for (Index i = kStrains; i < kJoints; ++i) here.controls[i] = uniform(random, -0.5, 0.5);
   return here;
 }
 
@@ -275,6 +276,32 @@ inline HingeSpring::Constants sample_constants(const HingeSpring&, Random& rando
   return {uniform(random, 0.5, 5.0)};
 }
 
+template <class Curvature, int Edges, int Joints>
+typename SpatialEndCell<Curvature, Edges, Joints>::Constants sample_constants(
+    const SpatialEndCell<Curvature, Edges, Joints>&, Random& random) {
+  using Kernel = SpatialEndCell<Curvature, Edges, Joints>;
+  typename Kernel::Constants c;
+  const auto root =
+      Kernel::Coupling::NullaryExpr([&] { return uniform(random, -1.0, 1.0); }).eval();
+  c.per_compliance = Kernel::Coupling::Identity() + root * root.transpose();
+  c.EI_1 = uniform(random, 0.5, 5.0);
+  c.EI_2 = uniform(random, 0.5, 5.0);
+  for (double& twist : c.twist) twist = uniform(random, 0.5, 5.0);
+  for (double& rest : c.rest.reshaped()) rest = uniform(random, -1.0, 1.0);
+  for (int i = 0; i < Edges; ++i) c.edges[std::size_t(i)] = FrameBlock::of(i);
+  for (int i = 0; i < Joints; ++i) {
+    c.joints[std::size_t(i)] = {sample_frame(direction(random), random),
+                                {kJoints + i * JointBlock::kSize}};
+  }
+  c.leaves = Joints == 2 || uniform(random, 0.0, 1.0) < 0.5;
+  return c;
+}
+
+inline SpatialJointSpring::Constants sample_constants(const SpatialJointSpring&, Random& random) {
+  return {{uniform(random, 0.5, 5.0), uniform(random, 0.0, 5.0), uniform(random, 0.5, 5.0)},
+          {sample_frame(direction(random), random), {kJoints}}};
+}
+
 enum class Shape { Arbitrary, NearStraight, NearFolded, Stretched };
 constexpr Shape kShapes[] = {Shape::Arbitrary, Shape::NearStraight, Shape::NearFolded,
                              Shape::Stretched};
@@ -355,8 +382,13 @@ Eigen::Matrix<double, Kernel::kDofs, 1> sample_spatial_positions(Shape shape, Ra
 }
 
 template <class Kernel>
+struct IsSpatialEndCell : std::false_type {};
+template <class Curvature, int Edges, int Joints>
+struct IsSpatialEndCell<SpatialEndCell<Curvature, Edges, Joints>> : std::true_type {};
+
+template <class Kernel>
 Eigen::Matrix<double, Kernel::kDofs, 1> sample_positions(Shape shape, Random& random) {
-  if constexpr (IsSpatial<Kernel>::value) {
+  if constexpr (IsSpatial<Kernel>::value || IsSpatialEndCell<Kernel>::value) {
     return sample_spatial_positions<Kernel>(shape, random);
   } else if constexpr (HasRotations<Kernel>::value) {
     return sample_jointed_positions<Kernel>(shape, random);
@@ -458,6 +490,62 @@ void sample_frames(const SectionSpring<Edges>& /*kernel*/,
         clamp.untwisted(here.controls).turned(clamp.twist_angle(here.controls));
     constants.clamp->carried = axes(held).transpose() * axes(turned(0.5)) * actuated.transpose();
   }
+}
+
+/// The sections of joints are turned by up to 1.5 rad from those of the edges beside them, and the
+/// joints have turned by up to 1.7 rad since the start of the step. Twists are up to two turns.
+template <class Curvature, int Edges, int Joints, class Coordinates>
+void sample_frames(const SpatialEndCell<Curvature, Edges, Joints>& /*kernel*/,
+                   const typename SpatialEndCell<Curvature, Edges, Joints>::Constants& c,
+                   const Coordinates& x, Random& random, Configuration& here) {
+  using Kernel = SpatialEndCell<Curvature, Edges, Joints>;
+  std::array<SectionFrame, Kernel::kFrames> frames;
+  std::array<double, Kernel::kFrames> turned{};
+  for (int i = 0; i < Edges; ++i) {
+    const Vec3 e = x.template segment<3>(3 * i + 3) - x.template segment<3>(3 * i);
+    const double theta = x[3 * Kernel::kNodes + i];
+    const auto frame = std::size_t(c.frame_of_edge(i));
+    frames[frame] = sample_source(i, e, random, here).turned(theta);
+    turned[frame] = theta;
+  }
+  const auto matrix = [](const SectionFrame& frame) {
+    Mat3 axes;
+    axes << frame.tangent, frame.first, frame.second;
+    return axes;
+  };
+  for (int i = 0; i < Joints; ++i) {
+    const auto frame = std::size_t(c.frame_of_joint(i));
+    const SectionFrame& near = frames[frame == 0 ? 1 : frame - 1];
+    const Mat3 turn =
+        Eigen::AngleAxisd(uniform(random, 0.0, 1.5), direction(random)).toRotationMatrix();
+    const Mat3 now = turn * matrix(near);
+    frames[frame] = SectionFrame::of(now.col(0), now.col(1));
+    const Vec3 delta = uniform(random, 0.0, 1.7) * direction(random);
+    turned[frame] = delta.dot(now.col(0));
+    const JointSection& joint = c.joints[std::size_t(i)];
+    const Eigen::Quaterniond base =
+        rotation_by(-delta) * Eigen::Quaterniond(Mat3(now * matrix(joint.drawn).transpose()));
+    here.controls.segment<3>(joint.joint.first) =
+        x.template segment<3>(Kernel::kDofs - Kernel::kJoints + 3 * i) - delta;
+    here.controls.segment<4>(joint.joint.first + 3) << base.w(), base.vec();
+  }
+  for (int cell = 0; cell < Kernel::kCells; ++cell) {
+    const auto k = std::size_t(cell);
+    const double whole = 6.283185307179586 * std::round(uniform(random, -2.5, 2.5));
+    here.controls[c.reference_twist(cell)] =
+        twist_between(frames[k], frames[k + 1]) + whole - (turned[k + 1] - turned[k]);
+  }
+}
+
+/// Joints that have turned by up to 2 rad, of which up to 1.7 rad since the start of the step.
+template <class Coordinates>
+void sample_frames(const SpatialJointSpring& /*kernel*/, const SpatialJointSpring::Constants& c,
+                   const Coordinates& x, Random& random, Configuration& here) {
+  const Vec3 delta = uniform(random, 0.0, 1.7) * direction(random);
+  const Eigen::Quaterniond base =
+      rotation_by(-delta) * rotation_by(uniform(random, 0.0, 2.0) * direction(random));
+  here.controls.segment<3>(c.section.joint.first) = x - delta;
+  here.controls.segment<4>(c.section.joint.first + 3) << base.w(), base.vec();
 }
 
 template <class Kernel, class Coordinates>

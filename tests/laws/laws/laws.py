@@ -587,7 +587,7 @@ def in_space(model: str) -> Law:
         if not is_planar(scene):
             raise NotApplicableError("the scene is not planar")
         if "joints" in scene:
-            raise NotApplicableError("joints are planar")
+            raise NotApplicableError("joints in scenes of two components are planar")
         analysis = scene.get("analysis", "static")
         if analysis != "static" and "static" not in analysis:
             raise NotApplicableError("motions out of the plane are among its answers")

@@ -287,6 +287,55 @@ def _joined(kind: str) -> Thing:
     return thing
 
 
+def _joined_in_space(kind: str) -> Thing:
+    """The same in space: an arm that leaves the twisted strip, and a third rod at its end."""
+
+    def thing(model: str) -> Scene:
+        at = np.array(_base(model)["rods"][0]["points"][4])
+        stiffness = {"EA": 400.0, "EI1": 0.3, "EI2": 0.5, "GJ": 0.2, "mass_per_length": 0.2}
+        stiffness |= {"rotary_inertia": 1e-3}
+        knee = (at + np.array([0.3, -0.4, 0.2])).round(12)
+
+        def straight(name: str, start: Array, end: Array) -> Scene:
+            section = {"stiffness": dict(stiffness), "director": [0.2, 0.3, 1.0]}
+            ends = {"from": start.tolist(), "to": end.tolist()}
+            return {"name": name, "nodes": 7, **ends, "cross_section": section}
+
+        arm = {**straight("arm", at, knee), "natural_curvature": [0.6, -0.3], "initial_twist": 0.8}
+        foot = straight("foot", knee, (knee + np.array([0.4, 0.1, -0.2])).round(12))
+        hip = [{"rod": "rod", "at": {"node": 4}}, {"rod": "arm", "at": "start"}]
+        ankle = [{"rod": "arm", "at": "end"}, {"rod": "foot", "at": "start"}]
+        turning = {"rod": "arm", "at": "start"}
+        return {
+            "rods": [arm, foot],
+            "joints": [
+                {"name": "hip", "of": hip, "kind": kind},
+                {"name": "ankle", "of": ankle},
+            ],
+            "supports": [
+                *CLAMP,
+                {**turning, "spring": {"rotational_stiffness": [0.8, 0.8, 0.3]}},
+                {"joint": "ankle", "spring": {"stiffness": [2.0, 2.0, 2.0]}},
+            ],
+            "loads": [
+                {"gravity": _v(model)},
+                {"moment": {"joint": "ankle", "moment": [0.05, -0.02, 0.03]}},
+                {"point_force": {"rod": "arm", "at": 0.21, "force": _v(model)}},
+                {"point_force": {"rod": "foot", "at": "end", "force": _v(model), "follower": True}},
+                {"moment": {"rod": "foot", "at": "end", "moment": _v(model), "follower": True}},
+            ],
+            "output": {
+                "probes": {
+                    "own": {"quantity": "torque", "rod": "arm", "at": "end", "side": "before"},
+                    "pull": {"quantity": "tension", "rod": "foot", "at": "start"},
+                    "bend": {"quantity": "moment", "rod": "arm", "at": "start"},
+                }
+            },
+        }
+
+    return thing
+
+
 ALL, TWISTS, FLAT, STRIP = MODELS, ("planar", "spatial"), ("planar",), ("spatial",)
 UNTWISTED = ("planar", "spatial_bend")
 
@@ -467,6 +516,8 @@ THINGS: dict[str, tuple[tuple[str, ...], Thing]] = {
     # Joints
     "joint": (FLAT, _joined("rigid")),
     "hinge": (FLAT, _joined("hinge")),
+    "joint in space": (STRIP, _joined_in_space("rigid")),
+    "ball": (STRIP, _joined_in_space("ball")),
     "joint beside actuations": (
         FLAT,
         lambda m: {

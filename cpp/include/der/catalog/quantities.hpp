@@ -61,7 +61,26 @@ using ReactionReading = double (*)(const Reaction& sum);
 using ActuationReading = double (*)(const ActuationForce& force);
 
 /// The quantity of a joint that a probe reads (output/joint_reader.hpp).
-enum class JointQuantity { None, Rotation, Angle, ForceX, ForceY, MomentZ };
+enum class JointQuantity {
+  None,
+  Rotation,
+  RotationX,
+  RotationY,
+  RotationZ,
+  Angle,
+  ForceX,
+  ForceY,
+  ForceZ,
+  MomentX,
+  MomentY,
+  MomentZ
+};
+
+/// Whether it is of the joint as a whole, not of a rod's part in it.
+constexpr bool is_rotation(JointQuantity quantity) {
+  return quantity == JointQuantity::Rotation || quantity == JointQuantity::RotationX ||
+         quantity == JointQuantity::RotationY || quantity == JointQuantity::RotationZ;
+}
 
 /// One row of the table of quantities: probes, `Replay::along`, exports and views follow it.
 struct Quantity {

@@ -15,6 +15,7 @@
 #include "der/energies/held_moment.hpp"
 #include "der/energies/load_amount.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/kinematics/joint_turn.hpp"
 
 namespace der {
 
@@ -74,6 +75,29 @@ struct JointFollowerForce {
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
 };
 
+/// A force that turns with a joint in space: R F0 with the rotation R of the joint. Local
+/// coordinates: the point on which it acts, then the three of the joint.
+struct SpatialJointFollowerForce {
+  Index rotation = 0;  ///< first degree of freedom
+  JointBlock joint;
+
+  [[nodiscard]] static Index size() { return 6; }
+  /// `amount` is F0 [N].
+  void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
+};
+
+/// A moment M on a joint in space, fixed in space or turning with it, then R M0: it does the work
+/// M . omega. Local coordinates: the three of the joint.
+struct JointMoment {
+  Index rotation = 0;  ///< first degree of freedom
+  JointBlock joint;
+  bool follower = false;
+
+  [[nodiscard]] static Index size() { return 3; }
+  /// `amount` is M, or M0 [N m].
+  void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
+};
+
 /// A force that turns with a rod in space: PlanarFollowerForce with the rotations of section
 /// frames. Local coordinates: the point, then the vector and the angle of each edge.
 struct FollowerForce {
@@ -128,8 +152,8 @@ struct CirculatoryLoad {
     double weight = 1.0;
   };
 
-  std::variant<PlanarFollowerForce, JointFollowerForce, FollowerForce, HeldForce<1>, HeldForce<2>,
-               SpatialMoment, HeldMoment<1>, HeldMoment<2>>
+  std::variant<PlanarFollowerForce, JointFollowerForce, SpatialJointFollowerForce, FollowerForce,
+               HeldForce<1>, HeldForce<2>, SpatialMoment, HeldMoment<1>, HeldMoment<2>, JointMoment>
       kind;
   LoadAmount amount;
   std::vector<std::vector<Term>> coordinates;  ///< the rows of B'

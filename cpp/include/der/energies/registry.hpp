@@ -21,6 +21,8 @@
 #include "der/energies/rotational_spring.hpp"
 #include "der/energies/section_spring.hpp"
 #include "der/energies/spatial_bend.hpp"
+#include "der/energies/spatial_end_cell.hpp"
+#include "der/energies/spatial_joint_spring.hpp"
 #include "der/energies/stretch.hpp"
 
 namespace der {
@@ -62,6 +64,15 @@ struct ElementLists {
       ElementList<FromSpatialPivot<CornerBend>>,                        //
       ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
       ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
+      ElementList<SpatialEndCell<AngleCurvature, 1, 1>>,                //
+      ElementList<SpatialEndCell<TangentCurvature, 1, 1>>,              //
+      ElementList<SpatialEndCell<AngleCurvature, 2, 1>>,                //
+      ElementList<SpatialEndCell<TangentCurvature, 2, 1>>,              //
+      ElementList<SpatialEndCell<AngleCurvature, 1, 2>>,                //
+      ElementList<SpatialEndCell<TangentCurvature, 1, 2>>,              //
+      ElementList<SpatialEndCell<AngleCurvature, 2, 2>>,                //
+      ElementList<SpatialEndCell<TangentCurvature, 2, 2>>,              //
+      ElementList<SpatialJointSpring>,                                  //
       ElementList<FromSpatialPivot<Fork>>,                              //
       ElementList<FromSpatialPivot<CornerFork>>,                        //
       ElementList<PlanarMoment>,                                        //

@@ -7,20 +7,13 @@
 #include "der/energies/local_term.hpp"
 #include "der/energies/vertex_response.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/kinematics/cross_matrix.hpp"
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/frame_block.hpp"
 #include "der/kinematics/held_frame.hpp"
 #include "der/kinematics/natural_strain_offset.hpp"
 
 namespace der {
-
-/// [v]x, the matrix of the cross product with v.
-template <class T>
-Matrix3<T> cross_matrix(const Vector3<T>& v) {
-  Matrix3<T> m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
 
 /// Whole twist [rad] of a vertex whose reference twist at the start of the step was `reference`:
 /// that of the two frames, which is known up to whole turns, next to what the angles make of it.

@@ -14,7 +14,9 @@ namespace der {
 enum class DofKind {
   Position,  ///< a component of a node's position [m]
   Angle,     ///< the angle of an edge's material frame [rad]
-  Rotation,  ///< the rotation of a joint from the initial shape [rad], in a plane
+  /// The rotation of a joint from the initial shape [rad]; in space one of its three coordinates
+  /// (kinematics/joint_turn.hpp).
+  Rotation,
 };
 
 /// Identifies a degree of freedom: a component of a node's position, the angle of an edge, or the
@@ -22,7 +24,7 @@ enum class DofKind {
 struct Dof {
   DofKind kind = DofKind::Position;
   Index owner = 0;    ///< the node, the edge, or the number of the rotation
-  int component = 0;  ///< of a position: 0 x, 1 y, 2 z
+  int component = 0;  ///< of a position, or of a rotation in space: 0 x, 1 y, 2 z
 };
 
 /// Degrees of freedom of one kind, which are contiguous in storage.
@@ -53,8 +55,8 @@ double largest_over(const std::vector<DofBlock>& blocks, const Value& value) {
 class DofMap {
  public:
   DofMap() = default;
-  /// `edge_starts`: the first node of each edge that has an angle, in ascending order.
-  /// `rotation_nodes`: the node of each rotation of a joint. All are free at first.
+  /// `edge_starts`: the first node of each edge that has an angle. `rotation_nodes`: the node of
+  /// each rotation of a joint, in space three times. All are free at first.
   DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts = {},
          std::vector<Index> rotation_nodes = {});
 

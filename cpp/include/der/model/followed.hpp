@@ -6,6 +6,7 @@
 namespace der {
 
 struct Model;
+struct State;
 
 // The coordinates at a time do not tell everything; the state follows the rest from step to step
 // (`State::followed`): whole turns of edges of a planar rod, frames of edges in space
@@ -23,9 +24,16 @@ struct FollowedEdge {
 
 /// Number of followed edges.
 Index num_turns(const Model& model);
-/// Number of rotations that are saved of each state: those of followed edges, or of joints. A model
-/// has one kind or the other.
+/// Number of numbers about rotations that are saved of each state: one for each followed edge or
+/// joint in a plane, a block for each joint in space. A model has one kind or the other.
 Index num_saved_turns(const Model& model);
+/// These of a state.
+Eigen::Ref<const Vector> saved_turns(const Model& model, const State& state);
+/// Gives them back to a state whose frames have followed its shape.
+void restore_turns(const Model& model, const Eigen::Ref<const Vector>& turns, State& state);
+/// Where `followed` has the blocks of the edges' frames.
+Eigen::Ref<const Vector> edge_frames(const Model& model, const Vector& followed);
+Eigen::Ref<Vector> edge_frames(const Model& model, Vector& followed);
 /// Number of entries of a vector `followed` of the model.
 Index num_followed(const Model& model);
 /// That of the initial shape as it is drawn.

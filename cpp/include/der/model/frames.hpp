@@ -2,6 +2,7 @@
 
 #include "der/core/types.hpp"
 #include "der/kinematics/frame_block.hpp"
+#include "der/kinematics/joint_turn.hpp"
 #include "der/kinematics/section_frame.hpp"
 #include "der/kinematics/spatial_edge.hpp"
 
@@ -9,11 +10,13 @@ namespace der {
 
 struct Model;
 
-/// The vertex between two edges with section frames, or between one and a clamp.
+/// The vertex between two edges with section frames, or between one and a clamp or a joint.
 struct FramedVertex {
-  Index before = -1;  ///< number of the edge; -1: a clamp, before the edge `after`
-  Index after = -1;   ///< number of the edge; -1: a clamp
-  HeldFrame held;     ///< of the clamp, if there is one
+  Index before = -1;     ///< number of the edge; -1: a clamp or joint, before the edge `after`
+  Index after = -1;      ///< number of the edge; -1: a clamp or joint
+  HeldFrame held;        ///< of the clamp, if there is one
+  Index rotation = -1;   ///< first degree of freedom of the joint's rotation, if there is one
+  JointSection joint{};  ///< of the joint
 
   /// Entry of the reference twist.
   [[nodiscard]] Index twist() const {
@@ -32,15 +35,19 @@ SectionFrameOf<T> moved_frame(const Vector3<T>& source, const Vector3<T>& direct
   return SectionFrameOf<T>::of(tangent, made_perpendicular<T>(moved, tangent));
 }
 
+/// Entries of the rotation of a joint, by the number of its first degree of freedom (DofMap).
+JointBlock joint_block(const Model& model, Index rotation);
+
 /// Moves the frames of all edges in `frames` to the shape at `coordinates`: parallel transport in
 /// time of their reference directors, and reference twists that change by less than half a turn
 /// (Bergou et al., Discrete Viscous Threads, SIGGRAPH 2010, section 4.2). `controls` turn the
-/// clamps. The angles of the edges, and all energies, stay as they are.
+/// clamps. The angles of the edges, the coordinates of joints and all energies stay as they are:
+/// each joint enters its rotation as that from which it turns on.
 void follow_frames(const Model& model, const Vector& coordinates, const Vector& controls,
                    Eigen::Ref<Vector> frames);
 
-/// The edge whose tangent has turned by more than a quarter turn from its value in `frames`; -1 if
-/// none has.
+/// First degree of freedom of the end of an edge whose tangent has turned by more than a quarter
+/// turn from its value in `frames`, or of the node of a joint that has; -1 if none has.
 Index frame_turned_too_far(const Model& model, const Vector& coordinates, const Vector& controls,
                            const Eigen::Ref<const Vector>& frames);
 

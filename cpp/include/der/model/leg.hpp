@@ -3,15 +3,17 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/kinematics/section_frame.hpp"
 
 namespace der {
 
 /// Where a leg meets a node.
 struct LegEnd {
-  /// Number of the joint's rotation that the leg's tangent follows (DofMap); -1: no moment acts
-  /// between them.
+  /// Number of the joint's rotation that the leg's tangent follows (DofMap), in space of the first
+  /// of three; -1: no moment acts between them.
   Index rotation = -1;
-  double direction = 0.0;  ///< of the leg's tangent where the joint has not turned [rad]
+  double direction = 0.0;  ///< of the leg's tangent where the joint has not turned [rad]; planar
+  SectionFrame section{};  ///< of the leg there, in space
 };
 
 /// An edge of a leg whose arc is longer or shorter than it (energies/arc_stretch.hpp).
@@ -24,9 +26,9 @@ struct LegArc {
   int step = 1;      ///< -1 where the element runs from the end of the leg
 };
 
-/// A smooth piece of a rod in a plane. Joints are nodes with rotations of their own; all that acts
+/// A smooth piece of a rod. Joints are nodes with rotations of their own; all that acts
 /// at a point acts on a joint, and legs between joints are plain chains with an end cell at each
-/// end (energies/end_cell.hpp).
+/// end (energies/end_cell.hpp, spatial_end_cell.hpp).
 struct Leg {
   Index first = 0;  ///< position of its first node in RodMesh::nodes
   Index last = 0;   ///< of its last one

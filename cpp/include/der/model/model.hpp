@@ -242,10 +242,11 @@ struct RodMesh {
   [[nodiscard]] const SectionSpringPlace* section_spring_at(double s) const;
 };
 
-/// A prescribed degree of freedom: its value is the initial one plus a control.
+/// A prescribed degree of freedom: its value is the initial one plus `weight` times a control.
 struct HeldDof {
   Index dof = 0;
   Index displacement = -1;  ///< control that holds the displacement [m]; -1: none
+  double weight = 1.0;      ///< of a joint in space: the component of the axis about which it turns
 };
 
 /// A control that moves what a support prescribes.

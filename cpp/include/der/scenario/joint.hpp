@@ -11,8 +11,20 @@ namespace der::scenario {
 
 enum class JointKind {
   Rigid,  ///< the rods keep the angles between them
-  Hinge,  ///< each rod turns freely about the others
+  Hinge,  ///< each rod turns freely about the others, in a plane
+  Ball,   ///< the same in space
 };
+
+inline const char* in_words(JointKind kind) {
+  switch (kind) {
+    case JointKind::Hinge:
+      return "hinge";
+    case JointKind::Ball:
+      return "ball";
+    default:
+      return "rigid joint";
+  }
+}
 
 /// A rod at one of its places.
 struct JointMember {

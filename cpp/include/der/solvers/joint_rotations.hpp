@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "der/core/index.hpp"
@@ -8,6 +9,7 @@
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/solvers/spatial_joint_rotations.hpp"
 
 namespace der {
 
@@ -81,6 +83,7 @@ class JointRotations {
   void solve_stage(double rate_factor, const Vector& extra_force);
 
   const Model& model_;
+  std::unique_ptr<SpatialJointRotations> in_space_;  // null: in a plane
   std::vector<bool> lags_;  // of each rotation
   bool any_lags_ = false;
   std::vector<Index> free_;               // degrees of freedom

@@ -3,13 +3,15 @@
 #include <array>
 #include <vector>
 
+#include "der/energies/spatial_joint_spring.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
 
 namespace scenario {
+struct Spring;
 struct Support;
-}
+}  // namespace scenario
 
 // A spring against turning acts on the tangent at a place, of which the chain knows only the mean
 // directions of the edges beside it: sum w_i theta_i with the weights of a moment there
@@ -34,6 +36,10 @@ double natural_turn_of_edges(const RodMesh& rod, const MomentPlace& place, const
 /// Adds the springs of a support: the one to the anchor as an element, the one against turning to
 /// the moment places of its rod, where it joins what is at the same place.
 void add_spring(const scenario::Support& support, Model& model);
+
+/// A spring against turning at arc length `s` [m] of a rod in space that has legs.
+SpatialJointSpring::Constants joint_spring(const scenario::Spring& spring, double s,
+                                           const RodMesh& rod, const Model& model);
 
 /// Adds the elements of a rod's springs against turning, before there are moments of loads.
 void add_rotational_springs(RodMesh& rod, Model& model);

@@ -120,7 +120,15 @@ def test_other_units(name: str) -> None:
 
 
 #: Where rotations and moments are unknowns of one small system, the pivots depend on the units.
-PIVOTED = ("moment", "loads together", "springs", "rotational spring", "modes")
+PIVOTED = (
+    "moment",
+    "loads together",
+    "springs",
+    "rotational spring",
+    "modes",
+    "joint in space",
+    "ball",
+)
 
 
 @every_scene

@@ -74,7 +74,7 @@ void Replay::go_to(std::size_t frame, const SavedFrames& frames) {
   follow(model_, state_);
   // Frames depend on the way of the rod, which is not saved, so that they are.
   edge_frames(model_, state_.followed) = frames.section_frames.row(row).transpose();
-  if (model_.dimension == 3) restore_turns(model_, turns, state_);
+  if (model_.dimension == 3 && turns.size() > 0) restore_turns(model_, turns, state_);
 }
 
 RodSeries Replay::along(const std::string& rod, const std::string& quantity,

@@ -48,12 +48,16 @@ constexpr int kMostDofs =
 
 template <class Kernel, class = void>
 struct NumPositions : std::integral_constant<int, Kernel::kDofs> {};
-template <class Kernel>
-struct NumPositions<Kernel, std::enable_if_t<(NumJoints<Kernel>::value > 0)>>
-    : std::integral_constant<int, Kernel::kDofs - Kernel::kJoints> {};
+/// In a plane the rotations of joints follow the nodes.
 template <class Kernel>
 struct NumPositions<
-    Kernel, std::enable_if_t<(NumJoints<Kernel>::value == 0 && Kernel::kDofs > 3 * Kernel::kNodes)>>
+    Kernel, std::enable_if_t<(NumJoints<Kernel>::value > 0 && NumJoints<Kernel>::value < 3)>>
+    : std::integral_constant<int, Kernel::kDofs - Kernel::kJoints> {};
+/// In space angles of edges follow them, then joints.
+template <class Kernel>
+struct NumPositions<
+    Kernel, std::enable_if_t<(NumJoints<Kernel>::value == 0 || NumJoints<Kernel>::value >= 3) &&
+                             (Kernel::kDofs > 3 * Kernel::kNodes)>>
     : std::integral_constant<int, 3 * Kernel::kNodes> {};
 
 /// The Hessian of an element of any kind. Its size is no part of the type, so that the functions

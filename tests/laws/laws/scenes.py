@@ -296,7 +296,7 @@ def _joined_in_space(kind: str) -> Thing:
         stiffness |= {"rotary_inertia": 1e-3}
         knee = (at + np.array([0.3, -0.4, 0.2])).round(12)
 
-        def straight(name: str, start: Array, end: Array) -> Scene:
+        def straight(name: str, start: np.ndarray, end: np.ndarray) -> Scene:
             section = {"stiffness": dict(stiffness), "director": [0.2, 0.3, 1.0]}
             ends = {"from": start.tolist(), "to": end.tolist()}
             return {"name": name, "nodes": 7, **ends, "cross_section": section}
@@ -315,14 +315,15 @@ def _joined_in_space(kind: str) -> Thing:
             "supports": [
                 *CLAMP,
                 {**turning, "spring": {"rotational_stiffness": [0.8, 0.8, 0.3]}},
+                {"rod": "foot", "at": "end", "fix": ["x", "y", "z"]},
                 {"joint": "ankle", "spring": {"stiffness": [2.0, 2.0, 2.0]}},
             ],
             "loads": [
                 {"gravity": _v(model)},
                 {"moment": {"joint": "ankle", "moment": [0.05, -0.02, 0.03]}},
                 {"point_force": {"rod": "arm", "at": 0.21, "force": _v(model)}},
-                {"point_force": {"rod": "foot", "at": "end", "force": _v(model), "follower": True}},
-                {"moment": {"rod": "foot", "at": "end", "moment": _v(model), "follower": True}},
+                {"point_force": {"rod": "foot", "at": 0.2, "force": _v(model), "follower": True}},
+                {"moment": {"rod": "foot", "at": "end", "moment": [0.1, -0.2, 0.1]}},
             ],
             "output": {
                 "probes": {

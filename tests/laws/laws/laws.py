@@ -425,10 +425,12 @@ def _end_directors(scene: Scene, model: der.Model) -> dict[str, list[float]]:
     """Director 1 at the end of each rod, as drawn: that of its last edge, half an edge on."""
     if model.name != "spatial":
         return {}
-    drawn = {"model": "spatial", "rods": scene["rods"]}
+    drawn = {"model": "spatial", "rods": scene["rods"], "analysis": "static"}
+    if "joints" in scene:
+        drawn = {**scene, "output": {}}  # the mesh depends on what acts on the rods
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", der.DerWarning)
-        directors = der.Simulation({**drawn, "analysis": "static"}).directors
+        directors = der.Simulation(drawn).directors
     ends, first = {}, 0
     for rod, given in zip(model.rods, scene["rods"], strict=True):
         points = model.initial_positions[rod.nodes]

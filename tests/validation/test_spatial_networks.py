@@ -16,7 +16,7 @@ import pytest
 from references.spatial_networks import Scene, SpatialNetwork
 
 FINENESS = [2, 4, 8]
-#: Where rods are held so that they stretch, errors of several orders and opposite signs show before.
+#: Where held rods stretch, errors of several orders and opposite signs show before.
 FINER = [8, 16, 32]
 FIELDS = ["x", "y", "z", "tx", "ty", "tz", "moment_1", "moment_2", "torque", "tension"]
 REACTIONS = [f"reaction_{c}" for c in ("x", "y", "z", "moment_x", "moment_y", "moment_z")]

@@ -256,6 +256,33 @@ def spun_strip() -> Figure:
     return der.run(CONFIGS / "spun_strip.yaml").plot("shapes", times=[1.0, 1.5])
 
 
+def table() -> Figure:
+    """Draw a table of four legs and four beams that a force at one corner twists."""
+    corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.8], [0.0, 0.8]]
+    section: dict[str, Any] = {"circle": {"radius": 0.01}}
+    rods: list[dict[str, Any]] = []
+    joints = []
+    for k, (x, y) in enumerate(corners):
+        other = corners[(k + 1) % 4]
+        post = {"name": f"leg{k}", "nodes": 9, "from": [x, y, 0], "to": [x, y, 0.7]}
+        beam = {"name": f"beam{k}", "nodes": 11, "from": [x, y, 0.7], "to": [*other, 0.7]}
+        rods += [post | {"cross_section": section | {"director": [1, 0, 0]}}, beam]
+        beam["cross_section"] = section
+        ends = [(f"leg{k}", "end"), (f"beam{k}", "start"), (f"beam{(k - 1) % 4}", "end")]
+        joints.append({"name": f"corner{k}", "of": [{"rod": rod, "at": at} for rod, at in ends]})
+    for rod in rods:
+        rod["material"] = {"youngs_modulus": "2 GPa", "poissons_ratio": 0.35, "density": 1000}
+    force = {"joint": "corner2", "force": [-90, 75, -45]}
+    scene = {
+        "rods": rods,
+        "joints": joints,
+        "supports": [{"rod": f"leg{k}", "at": "start", "clamp": True} for k in range(4)],
+        "loads": [{"point_force": force}],
+        "analysis": "static",
+    }
+    return der.run(scene).plot()
+
+
 def helical_buckling() -> Figure:
     """Draw the localised helix, and its envelope beside that of the infinite rod."""
     result = der.run(CONFIGS / "helical_buckling.yaml")
@@ -644,6 +671,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         bent_cantilever_45,
         hanging_coil,
         spun_strip,
+        table,
         helical_buckling,
         twisted_ring,
         tutorial_falling_rod,

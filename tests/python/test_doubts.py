@@ -1,6 +1,7 @@
 """Runs that leave what the model can tell: rods that cross, strains beyond a linear law, units."""
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -88,3 +89,99 @@ def test_a_probable_unit_is_told_when_the_scene_is_used_and_not_again_in_the_run
         result = der.run(fall)
     assert len(told) == 1
     assert len(result.summary["warnings"]) == 1
+
+
+def loop(analysis, dx=-0.3):
+    """A rod that lies across itself: one end is turned by a whole turn."""
+    return {
+        "rods": [
+            rod("r", [0, 0], [1, 0]) | {"nodes": 61, "cross_section": {"circle": {"radius": 0.004}}}
+        ],
+        "supports": [
+            {"rod": "r", "at": "start", "clamp": True},
+            {"rod": "r", "at": "end", "clamp": True, "prescribe": {"x": dx, "angle": 6.2831853}},
+        ],
+        "analysis": analysis,
+    }
+
+
+@pytest.mark.filterwarnings("ignore::der.DerWarning")
+@pytest.mark.parametrize(
+    ("analysis", "where"),
+    [
+        ("static", "in the equilibrium"),
+        ("modes", "in the equilibrium"),
+        ({"continuation": {"vary": "supports", "step": 0.05}}, "at load factor"),
+    ],
+)
+def test_equilibria_and_paths_of_rods_that_cross_themselves_say_so(analysis, where):
+    """The end is moved along the rod: with its one edge over the rod nothing begins overlapping."""
+    assert f"rod 'r' passes through itself {where}" in str(
+        der.run(loop(analysis)).summary["warnings"]
+    )
+
+
+def test_a_run_that_starts_from_an_equilibrium_across_itself_says_so_at_its_start():
+    scene = loop("static")
+    del scene["analysis"]
+    scene |= {"start_from": "equilibrium", "time": {"duration": 0.01, "step": 0.005}}
+    told = der.run(scene, check=False).summary["warnings"]
+    assert any("rod 'r' passes through itself at t = 0 s" in text for text in told)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.0125])
+def test_a_ring_is_looked_at_though_its_ends_meet(gap):
+    """Two opposite places are pushed past each other; the ends are 2 mm apart or less."""
+    angles = [i * (2 * math.pi - gap) / 60 for i in range(61)]
+    points = [[0.16 * math.cos(a), 0.16 * math.sin(a)] for a in angles]
+    pushed = [
+        {
+            "rod": "r",
+            "at": {"node": node},
+            "fix": ["x"],
+            "prescribe": {"y": {"times": [0, 1], "values": [0, by]}},
+        }
+        for node, by in ((15, -0.2), (45, 0.2))
+    ]
+    ring = rod("r", [0, 0], [1, 0]) | {"points": points}
+    ring["cross_section"] = {"circle": {"radius": 0.004}}
+    ring["material"] = {"youngs_modulus": 1e6, "density": 1000}
+    for key in ("from", "to", "nodes"):
+        del ring[key]
+    scene = {
+        "rods": [ring],
+        "supports": [{"rod": "r", "at": at, "clamp": True} for at in ("start", "end")] + pushed,
+        "loads": [{"damping": {"coefficient": 0.3}}],
+        "time": {"duration": 1.0, "step": 0.004},
+    }
+    (text,) = der.run(scene, check=False).summary["warnings"]
+    # The axes are nearer than two radii from t = 0.78 s on.
+    assert "rod 'r' passes through itself at t = 0.8" in text or "at t = 0.79" in text
+    scene["time"]["duration"] = 0.7
+    assert der.run(scene).summary["warnings"] == []
+
+
+def test_joined_rods_are_looked_at_but_for_their_joint():
+    """One leg of an L curls through the other; near the joint they may touch."""
+    legs = [rod("base", [0, 0], [0.5, 0]), rod("arm", [0, 0], [0, 0.5])]
+    for leg in legs:
+        leg |= {"nodes": 41, "cross_section": {"circle": {"radius": 0.003}}}
+        leg["material"] = {"youngs_modulus": 1e8, "density": 1000}
+    scene = {
+        "rods": legs,
+        "joints": [{"name": "corner", "of": [{"rod": leg["name"], "at": "start"} for leg in legs]}],
+        "supports": [{"rod": "base", "at": at, "clamp": True} for at in ("start", "end")],
+        "loads": [{"damping": {"coefficient": 0.3}}],
+        "actuation": [
+            {
+                "name": "curl",
+                "rod": "arm",
+                "natural_curvature": {"times": [0, 1], "values": [0, -7.0]},
+            }
+        ],
+        "time": {"duration": 1.2, "step": 0.004},
+    }
+    (text,) = der.run(scene, check=False).summary["warnings"]
+    assert "rods 'base' and 'arm' pass through one another at t = 1." in text
+    scene["time"]["duration"] = 1.0
+    assert der.run(scene).summary["warnings"] == []

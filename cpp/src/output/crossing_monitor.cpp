@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "der/core/constants.hpp"
 #include "der/core/index.hpp"
@@ -58,20 +60,33 @@ std::array<double, 2> nearest_places(const Vec3& a, const Vec3& a_end, const Vec
 
 }  // namespace
 
-CrossingMonitor::CrossingMonitor(const Model& model, const State& start, double step_cost)
-    : seen_(start.positions.head(model.dofs.num_positions())),
-      income_(kIncome * step_cost * static_cast<double>(model.num_nodes)),
+CrossingMonitor::CrossingMonitor(const Model& model, const State* start, double step_cost)
+    : income_(kIncome * step_cost * static_cast<double>(model.num_nodes)),
       same_(kCrossing * model.size()) {
-  for (const RodMesh& rod : model.rods) thickest_ = std::max(thickest_, rod.draw_radius);
-  const double touching = std::max(2.0 * kTouching * thickest_, same_);
-  for (const Vector* shape : {&model.initial_positions, &start.positions}) {
-    if (!shape->allFinite()) continue;
-    cut_into_pieces(model, *shape);
-    each_pair(model, touching, [&](const Pair& pair) {
-      if (pair.apart >= std::max(kTouching * pair.radii, same_)) return;
-      left_out_.emplace(pieces_[to_size(pair.first)].rod, pieces_[to_size(pair.second)].rod);
-    });
+  for (const RodMesh& rod : model.rods) {
+    thickest_ = std::max(thickest_, rod.draw_radius);
+    longest_edge_.push_back(*std::max_element(rod.edge_length.begin(), rod.edge_length.end()));
   }
+  seen_ = model.initial_positions.head(model.dofs.num_positions());
+  const double touching = std::max(2.0 * kTouching * thickest_, same_);
+  const auto enter_overlaps = [&](const Vector& shape) {
+    if (!shape.allFinite()) return;
+    cut_into_pieces(model, shape);
+    each_pair(model, touching, [&](const Pair& pair) {
+      if (pair.apart < std::max(kTouching * pair.radii, same_)) {
+        overlaps_.push_back(places_of(pair));
+      }
+    });
+  };
+  enter_overlaps(model.initial_positions);
+  if (start != nullptr) enter_overlaps(start->positions);
+  if (start == nullptr) credit_ = work_;  // for a first look at once
+  std::sort(overlaps_.begin(), overlaps_.end());
+}
+
+bool CrossingMonitor::Places::operator<(const Places& other) const {
+  return std::tie(first_rod, second_rod, first_place, second_place) <
+         std::tie(other.first_rod, other.second_rod, other.first_place, other.second_place);
 }
 
 void CrossingMonitor::after_step(const Model& model, const State& state) {
@@ -99,17 +114,11 @@ void CrossingMonitor::look(const Model& model, const State& state) {
   });
   credit_ -= work_;
   if (!nearest || clearance_ >= 0.0) return;
-  const auto place = [&](Index piece, double share) {
-    const Piece& here = pieces_[to_size(piece)];
-    return here.rest_start + share * (here.rest_end - here.rest_start);
-  };
-  const auto name = [&](Index piece) {
-    return model.rods[to_size(pieces_[to_size(piece)].rod)].name;
-  };
-  found_ = Crossing{name(nearest->first),
-                    name(nearest->second),
-                    place(nearest->first, nearest->first_share),
-                    place(nearest->second, nearest->second_share),
+  const Places places = places_of(*nearest);
+  found_ = Crossing{model.rods[to_size(places.first_rod)].name,
+                    model.rods[to_size(places.second_rod)].name,
+                    places.first_place,
+                    places.second_place,
                     state.time,
                     state.load_factor};
 }
@@ -227,6 +236,15 @@ CrossingMonitor::Pair CrossingMonitor::pair_of(const Model& model, Index a, Inde
   return {a, b, s, t, between.norm(), radius_of(model, first.rod) + radius_of(model, second.rod)};
 }
 
+CrossingMonitor::Places CrossingMonitor::places_of(const Pair& pair) const {
+  const auto place = [&](Index number, double share) {
+    const Piece& piece = pieces_[to_size(number)];
+    return (1.0 - share) * piece.rest_start + share * piece.rest_end;
+  };
+  return {pieces_[to_size(pair.first)].rod, pieces_[to_size(pair.second)].rod,
+          place(pair.first, pair.first_share), place(pair.second, pair.second_share)};
+}
+
 /// Ends that meet, as those of a strip that rolls up to a ring do, pass through nothing.
 bool CrossingMonitor::is_left_out(const Model& model, const Pair& pair) const {
   const auto from_end = [&](Index number, double share) {
@@ -241,9 +259,47 @@ bool CrossingMonitor::is_left_out(const Model& model, const Pair& pair) const {
   const double little = kMeeting * (length(pair.first) + length(pair.second));
   const double both =
       from_end(pair.first, pair.first_share) + from_end(pair.second, pair.second_share);
-  if (both <= kPi * pair.radii + little) return true;
-  if (left_out_.empty()) return false;
-  return left_out_.count({pieces_[to_size(pair.first)].rod, pieces_[to_size(pair.second)].rod}) > 0;
+  return both <= kPi * pair.radii + little || has_overlapped(model, pair);
+}
+
+/// Whether the pair is near places that overlapped at the start. Near is an edge, since an overlap
+/// of parallel pieces has a place an edge, and as much as a bend could bring together.
+bool CrossingMonitor::has_overlapped(const Model& model, const Pair& pair) const {
+  if (overlaps_.empty()) return false;
+  const Places now = places_of(pair);
+  const auto first = to_size(now.first_rod);
+  const auto second = to_size(now.second_rod);
+  const double near = kPi * pair.radii + std::max(longest_edge_[first], longest_edge_[second]);
+  // The other ways around a ring; both of its places may have passed the seam.
+  const int around_first = model.rods[first].closed ? 1 : 0;
+  const int around_second = model.rods[second].closed ? 1 : 0;
+  for (int i = -around_first; i <= around_first; ++i) {
+    for (int j = -around_second; j <= around_second; ++j) {
+      Places there = now;
+      there.first_place += i * model.rods[first].rest_length();
+      there.second_place += j * model.rods[second].rest_length();
+      if (is_near_an_overlap(there, near)) return true;
+      if (first != second || around_first == 0) continue;
+      std::swap(there.first_place, there.second_place);
+      if (is_near_an_overlap(there, near)) return true;
+    }
+  }
+  return false;
+}
+
+bool CrossingMonitor::is_near_an_overlap(const Places& places, double near) const {
+  Places from = places;
+  from.first_place -= near;
+  from.second_place = -std::numeric_limits<double>::infinity();
+  const auto may_be_near = [&](const Places& overlap) {
+    return overlap.first_rod == places.first_rod && overlap.second_rod == places.second_rod &&
+           overlap.first_place <= places.first_place + near;
+  };
+  for (auto overlap = std::lower_bound(overlaps_.begin(), overlaps_.end(), from);
+       overlap != overlaps_.end() && may_be_near(*overlap); ++overlap) {
+    if (std::abs(overlap->second_place - places.second_place) <= near) return true;
+  }
+  return false;
 }
 
 std::string describe(const CrossingMonitor::Crossing& crossing, const std::string& when) {

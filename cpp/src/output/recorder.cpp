@@ -21,6 +21,15 @@ double cost_of_step(const Simulation& simulation) {
   return in_model * (stepper.implicit ? stepper.step_cost : 0.2);
 }
 
+/// Where a watch for crossings begins; null where what has brought the structure there is to be
+/// told as well: equilibria.
+const State* start_of_watch(const Simulation& simulation) {
+  const scenario::Scene& scene = simulation.scenario().scene();
+  const State& state = simulation.state();
+  const bool moves = scene.is_dynamic() && (scene.start_from.empty() || state.step > 0);
+  return moves ? &state : nullptr;
+}
+
 bool is_finite(const Energies& e) {
   const auto& values = e.values();
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -33,7 +42,7 @@ Recorder::Recorder(const Simulation& simulation)
       summaries_(probes_.size()),
       values_(static_cast<Index>(probes_.size())),
       in_step_(probes_),
-      crossings_(simulation.model(), simulation.state(), cost_of_step(simulation)),
+      crossings_(simulation.model(), start_of_watch(simulation), cost_of_step(simulation)),
       start_(std::chrono::steady_clock::now()) {}
 
 void Recorder::observe(Simulation& simulation) {
@@ -41,7 +50,11 @@ void Recorder::observe(Simulation& simulation) {
   if (state.time == seen_time_) return;
   if (simulation.adaptive() && has_data()) record_frames_between(simulation);
   record(simulation, state, simulation.finished() || simulation.plan().is_frame(state.time));
-  crossings_.after_step(simulation.model(), state);
+  if (simulation.scenario().scene().is_dynamic()) {
+    crossings_.after_step(simulation.model(), state);
+  } else {
+    crossings_.look(simulation.model(), state);
+  }
   for (FrameSink* sink : sinks_) sink->stepped(simulation, *this);
 }
 

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "der/scenario/number_with_unit.hpp"
 #include "scenario/unit.hpp"
@@ -139,6 +140,22 @@ std::string pointed_decimal(std::string_view text) {
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   return text;
+}
+
+/// A text that is a number with separators, and the unit behind it; all of it and nothing where no
+/// unit is.
+std::pair<std::string_view, std::string_view> parted_from_unit(std::string_view text) {
+  const std::size_t last = text.find_first_not_of("0123456789.,+- ");
+  if (last == std::string_view::npos) return {text, {}};
+  std::size_t end = last;
+  const bool has_exponent = text[last] == 'e' || text[last] == 'E';
+  const std::size_t digits = has_exponent ? skip_sign(text, last + 1) : last;
+  const std::size_t exponent = has_exponent ? skip_digits(text, digits) : last;
+  if (exponent > digits) end = exponent;
+  const std::string_view unit = trimmed(text.substr(end));
+  if (unit.empty() || !read_unit(unit)) return {text, {}};
+  while (end > 0 && text[end - 1] == ' ') --end;
+  return {text.substr(0, end), unit};
 }
 
 std::string leading_zero_problem(std::string_view text) {
@@ -293,12 +310,16 @@ Reading<std::int64_t> read_whole(std::string_view text) {
 }
 
 std::string separator_problem(std::string_view text) {
-  const std::string thousands = joined_thousands(with_plain_blanks(text));
-  const std::string pointed = pointed_decimal(text);
-  if (pointed.empty()) return thousands.empty() ? thousands : thousands_clause(thousands);
-  const std::string clause = "a decimal has a point, not a comma: write " + pointed;
+  const auto [number, unit] = parted_from_unit(text);
+  const std::string thousands = joined_thousands(with_plain_blanks(number));
+  const std::string pointed = pointed_decimal(number);
+  const auto in_unit = [&, behind = unit](const std::string& written) {
+    return behind.empty() ? written : fmt::format("{} {}", written, behind);
+  };
+  if (pointed.empty()) return thousands.empty() ? thousands : thousands_clause(in_unit(thousands));
+  const std::string clause = "a decimal has a point, not a comma: write " + in_unit(pointed);
   if (thousands.empty()) return clause;
-  return fmt::format("{}, or {} if the comma parts thousands", clause, thousands);
+  return fmt::format("{}, or {} if the comma parts thousands", clause, in_unit(thousands));
 }
 
 bool looks_like_number(std::string_view text) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <iterator>
 #include <utility>
@@ -69,6 +70,67 @@ bool share_a_part(std::string_view a, std::string_view b) {
   });
 }
 
+/// What users call a quantity, and its names here.
+struct Synonyms {
+  std::string_view word;
+  std::array<std::string_view, 4> names;
+};
+constexpr std::array<Synonyms, 40> kSynonyms{{
+    {"velocity", {"speed", "vx", "vy", "vz"}},
+    {"vel", {"speed", "vx", "vy", "vz"}},
+    {"vel_x", {"vx"}},
+    {"vel_y", {"vy"}},
+    {"vel_z", {"vz"}},
+    {"velocity_x", {"vx"}},
+    {"velocity_y", {"vy"}},
+    {"velocity_z", {"vz"}},
+    {"x_velocity", {"vx"}},
+    {"y_velocity", {"vy"}},
+    {"z_velocity", {"vz"}},
+    {"position", {"x", "y", "z"}},
+    {"coordinate", {"x", "y", "z"}},
+    {"displacement", {"x", "y", "z"}},
+    {"u", {"x", "y", "z"}},
+    {"deflection", {"y", "z"}},
+    {"height", {"y", "z"}},
+    {"sag", {"y", "z"}},
+    {"position_x", {"x"}},
+    {"position_y", {"y"}},
+    {"position_z", {"z"}},
+    {"x_position", {"x"}},
+    {"y_position", {"y"}},
+    {"z_position", {"z"}},
+    {"tangent", {"tx", "ty", "tz", "slope"}},
+    {"angle", {"slope", "turning_angle"}},
+    {"theta", {"slope", "turning_angle"}},
+    {"direction", {"slope", "tx", "ty", "tz"}},
+    {"kappa", {"curvature"}},
+    {"bending", {"curvature", "moment"}},
+    {"torsion", {"twist", "torque"}},
+    {"twisting_moment", {"torque"}},
+    {"axial_force", {"tension"}},
+    {"normal_force", {"tension"}},
+    {"stress", {"tension", "moment"}},
+    {"stretch", {"strain"}},
+    {"elongation", {"strain"}},
+    {"strain_energy", {"elastic_energy", "stretch_energy", "bend_energy"}},
+    {"potential_energy", {"elastic_energy", "gravity_energy", "total_energy"}},
+    {"energy", {"total_energy", "kinetic_energy", "elastic_energy"}},
+}};
+
+/// The names of what `given` is called elsewhere, as far as they are known here.
+std::vector<std::string> named_elsewhere(std::string_view given,
+                                         const std::vector<std::string>& known) {
+  std::vector<std::string> found;
+  for (const Synonyms& synonyms : kSynonyms) {
+    if (synonyms.word != given) continue;
+    for (const std::string_view name : synonyms.names) {
+      if (std::find(known.begin(), known.end(), name) != known.end()) found.emplace_back(name);
+    }
+  }
+  return found;
+}
+
 /// The known words with the fewest edits from `given`, if these are few.
 std::vector<std::string> nearest(std::string_view given, const std::vector<std::string>& known) {
   std::vector<std::string> best;
@@ -103,7 +165,8 @@ std::string question(std::vector<std::string> words) {
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
   const std::string given = normalised(word);
-  std::vector<std::string> words = nearest(given, known);
+  std::vector<std::string> words = named_elsewhere(given, known);
+  if (words.empty()) words = nearest(given, known);
   if (words.empty()) {
     words = those(known, [&](const std::string& other) {
       return one_starts_the_other(given, normalised(other));

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "der/core/types.hpp"
@@ -16,13 +14,15 @@ namespace der {
 /// finds how far all that may meet is apart; the next one is due when nodes have moved by half of
 /// that, and waits until the steps since the last one have cost far more than it does. Rods are
 /// round, of the radius that they are drawn with; without one they can only cross in a plane. Left
-/// out are parts of a rod that a bend of this radius could bring together, and rods that overlap
-/// where they are drawn, or where the watch begins.
+/// out are parts of a rod that a bend of this radius could bring together, and the surroundings of
+/// two places that overlap where the rods are drawn, or where the watch begins: joints, ends that
+/// meet.
 class CrossingMonitor {
  public:
+  /// `start` is where the watch begins; null: nothing but the drawn shape is taken as given.
   /// `step_cost` is that of a step per node, against one of an implicit stepper of one stage in the
   /// spatial model.
-  CrossingMonitor(const Model& model, const State& start, double step_cost);
+  CrossingMonitor(const Model& model, const State* start, double step_cost);
 
   /// Looks if a look is due.
   void after_step(const Model& model, const State& state);
@@ -55,6 +55,13 @@ class CrossingMonitor {
     double radii = 0.0;  // [m] sum of the two
   };
 
+  /// Two places on rods, as rest arc lengths [m].
+  struct Places {
+    Index first_rod = 0, second_rod = 0;
+    double first_place = 0.0, second_place = 0.0;
+    bool operator<(const Places& other) const;
+  };
+
   /// A box around the pieces of a range; those of its two halves come later in the list.
   struct Box {
     Vec3 low, high;
@@ -75,18 +82,22 @@ class CrossingMonitor {
   [[nodiscard]] double neighbourhood(const Model& model, Index rod) const;
   [[nodiscard]] bool can_meet(const Model& model, const Piece& a, const Piece& b) const;
   [[nodiscard]] Pair pair_of(const Model& model, Index a, Index b) const;
+  [[nodiscard]] Places places_of(const Pair& pair) const;
   [[nodiscard]] bool is_left_out(const Model& model, const Pair& pair) const;
+  [[nodiscard]] bool has_overlapped(const Model& model, const Pair& pair) const;
+  [[nodiscard]] bool is_near_an_overlap(const Places& places, double near) const;
 
-  std::set<std::pair<Index, Index>> left_out_;  // pairs of rods
+  std::vector<Places> overlaps_;  // at the start, sorted
   std::optional<Crossing> found_;
-  Vector seen_;                 // positions at the last look [m]
-  double clearance_ = 0.0;      // [m] then, between all that may meet; 0 before the first look
-  double income_ = 0.0;         // work that a step pays for
-  double credit_ = 0.0;         // work that the steps since have paid for
-  double work_ = 0.0;           // of the last look
-  double thickest_ = 0.0;       // [m] the largest radius
-  double same_ = 0.0;           // [m] axes nearer than this cross
-  std::vector<double> length_;  // of each rod now [m]
+  Vector seen_;                      // positions at the last look [m]
+  double clearance_ = 0.0;           // [m] then, between all that may meet; 0 before the first look
+  double income_ = 0.0;              // work that a step pays for
+  double credit_ = 0.0;              // work that the steps since have paid for
+  double work_ = 0.0;                // of the last look
+  double thickest_ = 0.0;            // [m] the largest radius
+  double same_ = 0.0;                // [m] axes nearer than this cross
+  std::vector<double> length_;       // of each rod now [m]
+  std::vector<double> longest_edge_;  // of each rod at rest [m]
   std::vector<Piece> pieces_;
   std::vector<Box> boxes_;
 };

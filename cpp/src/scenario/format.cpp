@@ -178,28 +178,6 @@ bool read_numbers(const Shape& shape, const Place& place, Diagnostics& diagnosti
   return fine;
 }
 
-/// Says what to write if items of a list in one line are the parts of a number with commas, as a
-/// clause; empty if none seem to be. No space follows such a comma.
-std::string split_number_in(const Sequence& items) {
-  for (std::size_t i = 0; i + 1 < items.size(); ++i) {
-    std::string number;
-    std::string problem;
-    int next = items[i].mark.column;
-    for (std::size_t k = i; k < std::min(items.size(), i + kMostParts); ++k) {
-      const auto* part = std::get_if<Plain>(&items[k].content);
-      if (!part || items[k].mark.line != items[i].mark.line || items[k].mark.column != next) break;
-      number += (k == i ? "" : ",") + part->text;
-      next = items[k].mark.column + static_cast<int>(part->text.size()) + 1;
-      if (k == i) continue;
-      if (std::string longer = separator_problem(number); !longer.empty()) {
-        problem = std::move(longer);
-      }
-    }
-    if (!problem.empty()) return problem;
-  }
-  return {};
-}
-
 bool read_vector(const Shape& shape, const Place& place, Diagnostics& diagnostics,
                  Components& out) {
   const Sequence* items = place.value->sequence();
@@ -236,6 +214,26 @@ bool read_pair(const Shape& shape, const Place& place, Diagnostics& diagnostics,
 }
 
 }  // namespace
+
+std::string split_number_in(const Sequence& items) {
+  for (std::size_t i = 0; i + 1 < items.size(); ++i) {
+    std::string number;
+    std::string problem;
+    int next = items[i].mark.column;
+    for (std::size_t k = i; k < std::min(items.size(), i + kMostParts); ++k) {
+      const auto* part = std::get_if<Plain>(&items[k].content);
+      if (!part || items[k].mark.line != items[i].mark.line || items[k].mark.column != next) break;
+      number += (k == i ? "" : ",") + part->text;
+      next = items[k].mark.column + static_cast<int>(part->text.size()) + 1;
+      if (k == i) continue;
+      if (std::string longer = separator_problem(number); !longer.empty()) {
+        problem = std::move(longer);
+      }
+    }
+    if (!problem.empty()) return problem;
+  }
+  return {};
+}
 
 void report_expected(const std::string& what, const Place& place, Diagnostics& diagnostics,
                      const std::string& given_hint) {

@@ -33,6 +33,10 @@ struct Format {
 void report_expected(const std::string& what, const Place& place, Diagnostics& diagnostics,
                      const std::string& hint = {});
 
+/// Says what to write if items of a list in one line are the parts of a number with commas, as a
+/// clause; empty if none seem to be. No space follows such a comma.
+std::string split_number_in(const Sequence& items);
+
 /// The text of a scalar that is not typed, quoted or not; null for everything else.
 const std::string* text_of(const Value& value);
 

@@ -25,22 +25,48 @@ struct TableText : Result {
 Components zero_like(const Components& vector) { return Components(vector.size(), 0.0); }
 double zero_like(double /*number*/) { return 0.0; }
 
+/// ": a decimal has a point, not a comma: write 0.5" for a list like `[0, 0,5, 1]`; empty where no
+/// comma is followed by a space, so that all may part items.
+std::string comma_hint(const Sequence& items) {
+  const auto text_at = [&](std::size_t i) { return text_of(items[i]); };
+  bool any_space = false;
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    const std::string* before = text_at(i - 1);
+    if (before == nullptr || items[i].mark.line != items[i - 1].mark.line) continue;
+    const int behind = items[i - 1].mark.column + static_cast<int>(before->size()) + 1;
+    any_space = any_space || items[i].mark.column > behind;
+  }
+  const std::string hint = any_space ? split_number_in(items) : std::string();
+  return hint.empty() ? hint : ": " + hint;
+}
+
+/// The same of whichever of the two lists of a table has one.
+std::string comma_hint(const Place& times, const Place& values) {
+  for (const Place* place : {&times, &values}) {
+    const Sequence* items = place->value->sequence();
+    if (items == nullptr) continue;
+    if (std::string hint = comma_hint(*items); !hint.empty()) return hint;
+  }
+  return {};
+}
+
 /// Times that increase, and a value for each.
 template <class Table>
 void check_entries(const Table& table, const Place& place, Diagnostics& diagnostics) {
   const Mapping& entries = *place.value->mapping();
   const Place times = place.at(*find_entry(entries, "times"));
+  const Place values = place.at(*find_entry(entries, "values"));
   for (std::size_t i = 1; i < table.times.size(); ++i) {
     if (table.times[i] > table.times[i - 1]) continue;
     diagnostics.add(times.at(static_cast<int>(i), (*times.value->sequence())[i]),
-                    fmt::format("times must increase, but {} s follows {} s", table.times[i],
-                                table.times[i - 1]));
+                    fmt::format("times must increase, but {} s follows {} s{}", table.times[i],
+                                table.times[i - 1], comma_hint(*times.value->sequence())));
     return;
   }
   if (table.times.size() != table.values.size()) {
-    diagnostics.add(place.at(*find_entry(entries, "values")),
-                    fmt::format("a table needs one value for each of its {} times, got {}",
-                                table.times.size(), table.values.size()));
+    diagnostics.add(
+        values, fmt::format("a table needs one value for each of its {} times, got {}{}",
+                            table.times.size(), table.values.size(), comma_hint(times, values)));
   }
 }
 

@@ -12,7 +12,7 @@ import pytest
 from der.accuracy.error_bars import ErrorEstimate, estimate_error
 from der.accuracy.event_matching import match_places
 from der.accuracy.noise import ExactBelow, exact_below
-from der.accuracy.probe_extremes import parabola_top, probe_values
+from der.accuracy.readings import parabola_top, probe_values
 from der.accuracy.refinement import (
     curves_between_points,
     rods_that_cannot_be_refined,
@@ -26,10 +26,10 @@ from der.accuracy.resampling import (
     resample_list,
     resample_ring,
 )
-from der.accuracy.static_verifier import StaticVerifier
-from der.accuracy.verification import Verification, VerifiedValue
+from der.accuracy.verification import Verification, with_digits_of
 from der.accuracy.verification_runs import VerificationRuns
-from der.accuracy.verification_table import with_digits_of
+from der.accuracy.verified_value import VerifiedValue
+from der.accuracy.verifier import Evaluation
 from der.cli import main
 from der.probe_series import ProbeSeries
 from scipy.integrate import solve_bvp
@@ -1080,16 +1080,15 @@ def test_an_event_that_only_finer_meshes_find_is_flagged(column):
     coarse = der.Scenario.from_dict(column)
     fine = with_elements(coarse, 2)
     runs = VerificationRuns(der.run(fine), meshes=["41 nodes", "21 nodes"])
-    runs.time[0] = runs.space[0] = runs.base
-    runs.space[1] = der.run(coarse)
-    verifier = StaticVerifier(runs)
-    event = next(v for v in verifier.values() if v.label == "factor, bifurcation 1")
+    runs.results = {("time", 0): runs.base, ("space", 0): runs.base, ("space", 1): der.run(coarse)}
+    values = Evaluation(runs).values()
+    event = next(v for v in values if v.label == "factor, bifurcation 1")
     assert math.isnan(event.value)
     assert event.flagged
     assert event.to_dict()["value"] is None
     found = Verification(fine, (event,), (), (), (), (), 0.0)
     assert str(found).splitlines()[3].split()[:4] == ["factor,", "bifurcation", "1", "-"]
-    assert len(verifier.notes()) == 1
+    assert len(Evaluation(runs).notes(values)) == 1
 
 
 def test_a_path_that_stops_before_its_last_factor_has_no_end(column):

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from der._core import Scenario
-from der.accuracy.study_arguments import check_errors
+from der.accuracy.study_plan import check_errors
 from der.accuracy.study_row import StudyRow, seconds_text
 from der.output_paths import written_whole
 

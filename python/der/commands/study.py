@@ -70,7 +70,7 @@ def execute(arguments: argparse.Namespace) -> int:
     import matplotlib as mpl
 
     from der.accuracy.studier import study
-    from der.accuracy.study_arguments import check_errors
+    from der.accuracy.study_plan import check_errors
 
     if arguments.errors is not None:
         check_errors(arguments.errors)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from der._core import RunRecording, Scenario, __version__
-from der.accuracy.static_readings import Reading, static_readings
+from der.accuracy.readings import Reading, read_run
 from der.accuracy.verification import Verification
 from der.accuracy.verifier import verify
 from der.errors import DerError
@@ -167,7 +167,7 @@ def _read(scenario: Scenario, recording: RunRecording) -> _Reading:
     summary = {key: recording.summary_value(key) for key in _OF_SUMMARY}
     found: tuple[Reading, ...] = ()
     if scenario.analysis in _THAT_FIND and recording.error is None:
-        readings = static_readings(recorded_result(scenario, recording))
+        readings = read_run(recorded_result(scenario, recording))
         found = tuple(
             reading for label, reading in readings.items() if label not in summary["probes"]
         )

@@ -134,7 +134,9 @@ def resample(
     step = factor.denominator
     if factor.numerator == 1:
         if elements % step or any(corner % step for corner in corners):
-            raise ValueError(f"a rod drawn by {count} points cannot do with 1/{step} of its elements")
+            raise ValueError(
+                f"a rod drawn by {count} points cannot do with 1/{step} of its elements"
+            )
         return points[::step]
     if step != 1:
         raise ValueError(f"a rod drawn by points takes whole multiples of its {elements} elements")

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from contextlib import closing, contextmanager
 from dataclasses import replace
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +25,9 @@ from der.sweeps.chunk import Chunk
 from der.sweeps.design import Design, Member, make_design
 from der.sweeps.design_checks import check_design
 from der.sweeps.executors import AnyExecutor, Place, lost_its_worker, place_for
-from der.sweeps.probe_columns import probe_columns
-from der.sweeps.scene_difference import first_difference
 from der.sweeps.store import FILE, FRAMES, LOCK, Store, is_sweep, locked
 from der.sweeps.sweep_result import Sweep, load_sweep, read_sweep
-from der.sweeps.table import LOST, Table, failed_row
+from der.sweeps.table import LOST, Table, columns_of_probe, row_of, units_of_probes
 from der.sweeps.values import stored
 
 #: What a chunk is to take [s]: a transaction and a journey are little against it.
@@ -203,13 +201,19 @@ def _begin(
     if not kept:
         # Probes may be varied; the first member is known to be valid.
         first = scene.with_(**dict(zip(design.paths, next(iter(design)), strict=True)))
-        store.create(description, design.paths, probe_columns(first))
+        on_path = first.factor_range is not None
+        probes = (columns_of_probe(*probe, on_path) for probe in units_of_probes(first).items())
+        store.create(description, design.paths, chain.from_iterable(probes))
         return
     if kept["scene"] != description["scene"]:
+        before, now = (
+            Scenario.parse(text).to_dict() for text in (kept["scene"], description["scene"])
+        )
+        difference = _first_difference(before, now)
         raise ValueError(
             f"{out} holds a sweep of the scene '{kept['title']}' ({kept['source']}), not of "
             f"'{description['title']}' ({description['source']}): they differ in "
-            f"{first_difference(kept['scene'], description['scene'])}; name another folder"
+            f"{difference or 'the text'}; name another folder"
         )
     paths = [column.name for column in store.columns if column.kind == "parameter"]
     if sorted(paths) != sorted(design.paths):
@@ -231,6 +235,19 @@ def _begin(
                 f"{description['version']}: the column 'version' tells which members are whose"
             ]
         )
+
+
+def _first_difference(one: Any, other: Any, path: str = "") -> str | None:
+    """Return the key path of the first difference of two scenes; None if there is none."""
+    pairs: list[tuple[str, Any, Any]]
+    if isinstance(one, dict) and isinstance(other, dict):
+        pairs = [(key, one.get(key), other.get(key)) for key in (*one, *other)]
+    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        pairs = [(str(i), *both) for i, both in enumerate(zip(one, other, strict=True))]
+    else:
+        return path if one != other else None
+    found = (_first_difference(a, b, f"{path}.{key}".lstrip(".")) for key, a, b in pairs)
+    return next((path for path in found if path is not None), None)
 
 
 def _unfinished(
@@ -277,7 +294,7 @@ class _Sweeper:
             verify=description["verify"] == "yes",
             frames=str(Path(out).resolve() / FRAMES) if frames and out is not None else "",
         )
-        done, again = store.finished(design.paths), store.failed_for_surroundings(design.paths)
+        done, again = store.known(design.paths)
         first = store.request(design)
         self._left = _unfinished(enumerate(design, first), done, again)
         # Among `done` there may be rows of other requests.
@@ -333,7 +350,7 @@ class _Sweeper:
             raise error
         if len(chunk.members) == 1:
             number, _ = chunk.members[0]
-            return Table(rows=[failed_row(number, LOST, f"every worker that ran it died: {error}")])
+            return Table(rows=[row_of(number, LOST, f"every worker that ran it died: {error}")])
         half = len(chunk.members) // 2
         self._again += [self._with(chunk.members[:half]), self._with(chunk.members[half:])]
         return None

@@ -22,11 +22,11 @@ from der.accuracy.refinement import SPACE_ORDER, belongs_to_its_mesh
 from der.accuracy.verification import Verification
 from der.accuracy.verification_runs import AXES, OTHER_CURVES, Axis, Runner, VerificationRuns
 from der.accuracy.verified_value import SOLVER_FACTOR, VerifiedValue
+from der.arguments import whole_number
 from der.errors import warn
 from der.parallel import Workers
 from der.progress import ProgressFunction
 from der.scenario import SceneLike, load
-from der.whole_numbers import whole_number
 
 #: Where the cross-check run contradicts, the error is at most this times the difference to it.
 _CROSS_CHECK_FACTOR = 1.25

@@ -13,9 +13,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from der.arguments import whole_number_argument
 from der.output_paths import check_output_folder, make_folder, output_folder, written_whole
 from der.progress import progress_on_terminal
-from der.spelled_numbers import whole_number_argument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

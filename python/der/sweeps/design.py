@@ -13,10 +13,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from der.key_paths import check_varied
-from der.spelled_numbers import read_number
+from der.arguments import check_varied, read_number, whole_number
 from der.sweeps.values import MOST_VALUES, Range, Values, as_values, stored
-from der.whole_numbers import whole_number
 
 #: The values of a member's parameters, in the order of the paths.
 Member = tuple[Any, ...]

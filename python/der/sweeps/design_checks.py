@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from der._core import Scenario
+from der.arguments import check_apart
 from der.errors import SceneError
-from der.key_paths import check_apart
 from der.sweeps.design import Design
 from der.sweeps.store import MOST_COLUMNS
 from der.sweeps.table import RUN_COLUMNS, TOLD, WHEN, probes_of, units_of_probes

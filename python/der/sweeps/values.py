@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from der._core import number_with_unit
-from der.spelled_numbers import NUMBER, read_number
-from der.value_lists import check_value_list
+from der.arguments import NUMBER, check_value_list, read_number
 
 #: Values of a range and points of a sample, at most: all of them are held in memory.
 MOST_VALUES = 10_000_000

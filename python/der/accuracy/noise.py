@@ -26,16 +26,9 @@ _OF_COORDINATES = 8 * 2.2e-16
 def noise_floor(model: Model, unit: str, step: float, largest: float) -> float:
     """Return the size of differences that are not significant, in the unit of the probe.
 
-    Parameters
-    ----------
-    model
-        Its rods give the natural sizes: length L, bending moment EI/L, and so on.
-    unit
-        Unit of the probe.
-    step
-        Shortest time step [s]; infinite for a static scene.
-    largest
-        Largest absolute value of the probe in the run.
+    The rods of the model give the natural sizes: length L, bending moment EI/L, and so on. The
+    shortest `step` [s] is infinite for a static scene; `largest` is the largest absolute value of
+    the probe in the run.
     """
     share = _OF_SIZES.get(unit, _OF_SIZE)
     return _OF_VALUE * largest + share * characteristic_scale(model.rods, unit, step)

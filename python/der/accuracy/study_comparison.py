@@ -39,16 +39,7 @@ def reference_tasks(
 ) -> dict[tuple[int, int], Task]:
     """Return the runs that references on these meshes are made of, by mesh and level.
 
-    Parameters
-    ----------
-    meshes
-        Those of the study, and finer ones.
-    step
-        Step of the coarsest level [s], which two more levels halve; 0 for a scene without time.
-    every
-        Between frames [s].
-    costs
-        Predicted costs.
+    The coarsest level has this `step` [s], which two more halve; it is 0 for a scene without time.
     """
     stepper = REFERENCE_STEPPER if step > 0.0 else ""
     per_node = costs.seconds(1.0, stepper, step) / costs.cpu_seconds
@@ -105,18 +96,9 @@ def _converge_in_time(levels: Sequence[Series]) -> Reference:
 class Comparison:
     """Compares the runs of a study with its reference.
 
-    Parameters
-    ----------
-    outcomes
-        Outcomes of the runs of the reference, by mesh and level.
-    meshes
-        All meshes, coarsest first.
-    varied
-        How many of them the study has; the further ones are of the reference only.
-    left_out
-        Probes that are not compared.
-    every
-        The interval [s] whose multiples the reference has; 0 without time.
+    It is made of the outcomes of `reference_tasks`, by mesh and level. The study itself has the
+    first `varied` of the meshes, which are coarsest first; the further ones are of the reference
+    only. The reference has the multiples of the interval `every` [s], which is 0 without time.
 
     Attributes
     ----------

@@ -38,13 +38,7 @@ def check_arguments(
     steppers: Sequence[str] | None,
     max_seconds: float,
 ) -> None:
-    """Check the arguments of `der.study` as far as that is possible without the scene.
-
-    Raises
-    ------
-    ValueError
-        For an empty list, or a value that is none for any scene.
-    """
+    """Refuse empty lists, and values that are none for any scene, before any work is done."""
     if nodes is not None:
         for count in _checked_list("nodes", nodes, "[21, 41]"):
             if isinstance(count, bool) or not isinstance(count, Integral):
@@ -60,13 +54,7 @@ def check_arguments(
 
 
 def check_errors(errors: Sequence[float]) -> None:
-    """Check the errors that advice is wanted for.
-
-    Raises
-    ------
-    ValueError
-        If there are none, or one that is not greater than 0 and finite.
-    """
+    """Refuse errors that nobody can want advice for: they are finite and greater than 0."""
     _check_positive("errors", errors, "units of the probes", "[0.001, 0.0001]")
 
 
@@ -124,13 +112,8 @@ def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]
     """Return the meshes to try, coarsest first.
 
     Those of the given numbers of nodes of the leading rod; the elements of other rods are varied in
-    proportion. Without them half, once, twice and four times the elements, as far as the scene
-    allows.
-
-    Raises
-    ------
-    ValueError
-        If the scene cannot take one of `nodes`.
+    proportion; a `ValueError` says which of them the scene cannot take. Without them half, once,
+    twice and four times the elements, as far as the scene allows.
     """
     rod = find_leading_rod(scenario)
     if rod is None:
@@ -176,13 +159,7 @@ def with_finer_meshes(meshes: Sequence[Mesh]) -> list[Mesh]:
 
 
 def choose_steppers(names: Sequence[str] | None, scenario: Scenario) -> list[str]:
-    """Return the names of the steppers to try: those given, or all that the scene can have.
-
-    Raises
-    ------
-    ValueError
-        For a name that no stepper has.
-    """
+    """Return the names of the steppers to try: those given, or all that the scene can have."""
     if names is not None:
         return [find_stepper(name).name for name in dict.fromkeys(names)]
     return [info.name for info in steppers() if _can_have(scenario, info.name)]
@@ -202,11 +179,6 @@ def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:
     These are around the scene's own step; where that comes from a tolerance or from the stability
     of an explicit stepper, they are shares of the duration. They are whole parts or multiples of
     the interval between frames, so that runs have values at the frames that the scene saves.
-
-    Raises
-    ------
-    ValueError
-        For a step that is not positive or longer than the run.
     """
     duration = base.scenario.duration
     if steps is not None:
@@ -245,12 +217,8 @@ def frame_interval(base: Result) -> float:
 def reference_interval(base: Result, steps: Sequence[float]) -> float:
     """Return the interval [s] that contains the times at which any of these steps is compared.
 
-    It is a whole multiple of that between the frames of the scene as written.
-
-    Raises
-    ------
-    ValueError
-        If a step misses all frames of the scene.
+    It is a whole multiple of that between the frames of the scene as written. A step that misses
+    all of these is a `ValueError`.
     """
     frames = frame_interval(base)
     return frames * math.gcd(*(_frames_apart(step, frames) for step in steps))
@@ -259,10 +227,7 @@ def reference_interval(base: Result, steps: Sequence[float]) -> float:
 def common_interval(step: float, frames: float) -> float:
     """Return the shortest interval [s] that is a multiple of `step` and of `frames` [s].
 
-    Raises
-    ------
-    ValueError
-        If there is none up to a thousand frames.
+    If there is none up to a thousand frames, that is a `ValueError`.
     """
     return frames * _frames_apart(step, frames)
 

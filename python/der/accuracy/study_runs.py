@@ -68,14 +68,8 @@ class Trial:
 class StudyCosts:
     """Predicts CPU times: they grow with the number of nodes and of steps.
 
-    Parameters
-    ----------
-    base
-        The run of the scene as written.
-    cpu_seconds
-        CPU time of the scene itself [s]: the unit of weights.
-    max_seconds
-        CPU time allowed for a configuration [s].
+    The run of the scene as written took `cpu_seconds` [s], which is the unit of weights; a
+    configuration may take `max_seconds` [s].
     """
 
     def __init__(self, base: Result, cpu_seconds: float, max_seconds: float) -> None:
@@ -115,20 +109,10 @@ class StudyCosts:
 class StudyRuns:
     """Every mesh with every stepper and its steps.
 
-    Parameters
-    ----------
-    meshes
-        The meshes to try.
-    steppers, steps
-        Names of the steppers and steps [s] to try, longest first; an empty name and 0 for a scene
-        without time.
-    explicit_too
-        Whether explicit steppers are run with `steps` as well; otherwise with the longest stable
-        step among the halvings of the longest, and the next.
-    every
-        The interval [s] whose multiples the reference has.
-    costs
-        Predicted costs of the runs.
+    Steps [s] are longest first; a scene without time has a stepper without a name and a step of 0.
+    Explicit steppers are run with these steps only if `explicit_too`, otherwise with the longest
+    stable step among the halvings of the longest, and the next. The reference has the multiples of
+    the interval `every` [s].
     """
 
     def __init__(

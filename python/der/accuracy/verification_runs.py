@@ -103,26 +103,15 @@ class VerificationRuns:
 
 
 class Runner:
-    """Runs a scene as written, and then on all levels in space and in time.
+    """Runs a scene with probes as written, and then on all levels in space and in time.
 
-    Parameters
-    ----------
-    scenario
-        With probes.
-    levels
-        2 or 3; None: 3 if that is affordable.
-    workers
-        Who runs them.
+    These are 2 or 3 levels; 3 without a number, if that is affordable. An error of the scene as
+    written is raised, those of other runs are noted.
 
     Attributes
     ----------
     runs
         The runs so far, which `refine` extends.
-
-    Raises
-    ------
-    SceneError, NotConvergedError, DivergedError
-        If the scene as written does not run to its end.
     """
 
     def __init__(self, scenario: Scenario, levels: int | None, workers: Workers) -> None:

@@ -110,13 +110,7 @@ def verify(
 
 
 class Evaluation:
-    """Puts error bars on the numbers of a scene.
-
-    Parameters
-    ----------
-    runs
-        The scene as written, and on all levels.
-    """
+    """Puts error bars on the numbers of a scene, which was run as written and on all levels."""
 
     def __init__(self, runs: VerificationRuns) -> None:
         self._runs = runs

@@ -163,25 +163,8 @@ def make_design(
 ) -> Design:
     """Check what a sweep is asked for, and return its members.
 
-    Parameters
-    ----------
-    vary
-        By parameter its values, as `as_values` takes them.
-    zipped
-        Whether the values are taken side by side.
-    sample
-        ``sobol:N`` or ``lhs:N``; N points in the space of all parameters. Of a list, each value has
-        an equal share.
-    seed
-        Where the sample starts.
-
-    Raises
-    ------
-    ValueError
-        For no parameter, values that are not spelled right, lists side by side of different
-        lengths, a range without a sample, more than `MOST_MEMBERS`, and a seed below 0.
-    TypeError
-        If `vary` is no dict of paths, or the seed no whole number.
+    `vary` has by parameter its values, as `as_values` takes them; the others are those of
+    `der.sweep`. In a sample, each value of a list has an equal share.
     """
     check_varied(vary)
     seed = whole_number("seed", seed, 0)

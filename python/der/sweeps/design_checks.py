@@ -16,13 +16,7 @@ from der.sweeps.values import Range, stored
 def check_design(scene: Scenario, design: Design, verify: bool) -> None:
     """Find a mistake in a path, a value, or what the table can hold.
 
-    Raises
-    ------
-    SceneError
-        If the first member is not valid: a path that there is not, above all.
-    ValueError
-        For two paths to the same value, a whole number that is none, columns that cannot be, and a
-        probe that has different units in different members.
+    The first member that is not valid is a `SceneError`, all else a `ValueError`.
     """
     _check_members(scene, design)
     _check_columns(scene, design, verify)

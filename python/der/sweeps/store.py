@@ -53,13 +53,7 @@ def is_sweep(folder: str | os.PathLike[str]) -> bool:
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Keep other sweeps out of a folder for the time of a ``with`` block.
-
-    Raises
-    ------
-    DerError
-        If another one is writing there.
-    """
+    """Keep other sweeps out of a folder for the time of a ``with`` block."""
     with (folder / LOCK).open("w") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -74,13 +68,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 class Store:
-    """The tables of a sweep.
-
-    Parameters
-    ----------
-    path
-        The database file; None for one in memory.
-    """
+    """The tables of a sweep, in a database file or in memory."""
 
     def __init__(self, path: Path | None = None) -> None:
         self._path = path
@@ -186,12 +174,7 @@ class Store:
     def write(self, table: Table, paths: Iterable[str], values: Mapping[int, Member]) -> None:
         """Add finished members, all of them or none; one that was run again has its new row.
 
-        Parameters
-        ----------
-        table
-            Their rows.
-        paths, values
-            The parameters, and by number those of each member.
+        `values` are those of the parameters of each member, by its number.
         """
         table = self._that_fits(table)
         run, found = [column.name for column in RUN_COLUMNS], list(table.columns)

@@ -157,15 +157,7 @@ def load_sweep(folder: str | os.PathLike[str]) -> Sweep:
 def read_sweep(
     store: Store, rows: Callable[[tuple[Column, ...], int], Rows] | None = None
 ) -> Sweep:
-    """Return what a store holds.
-
-    Parameters
-    ----------
-    store
-        The tables of a sweep.
-    rows
-        Reads them when they are asked for; without it, they are read now.
-    """
+    """Return what a store holds; without a function that reads rows later, they are read now."""
     description = store.description()
     if not description:
         raise ValueError("the sweep never began: it holds nothing to read")

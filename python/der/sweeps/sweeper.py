@@ -112,8 +112,7 @@ def sweep(
     >>> tips = der.sweep("cantilever.yaml", {"loads.0.point_force.force.1": "-5:0:51"})
     >>> tips["tip_y"]
     """
-    if out is not None:
-        out = folder_path("out", out)
+    folder = None if out is None else folder_path("out", out)
     if not (progress is None or callable(progress)):
         raise TypeError(f"progress must be a function, got {progress!r}")
     for name, value in {
@@ -130,7 +129,7 @@ def sweep(
     design = make_design(vary, zipped=zipped, sample=sample, seed=seed)
     check_design(scene, design, verify)
     checked_jobs(jobs)
-    if frames and out is None:
+    if frames and folder is None:
         raise ValueError("run folders need a folder to be in: give out as well")
     description = {
         "title": scene.title,
@@ -141,32 +140,41 @@ def sweep(
         "frames": "yes" if frames else "no",
         "version": __version__,
     }
-    with _store(out, resume) as store:
-        _begin(store, scene, description, design, out)
+    runs = str(folder.resolve() / FRAMES) if frames and folder is not None else ""
+    blank = Chunk(description["scene"], scene.source, design.paths, (), bool(verify), runs)
+    with _store(folder, resume) as store:
+        _begin(store, scene, description, design, folder)
         with place_for(executor, jobs) as place:
             try:
-                _Sweeper(store, scene, design, description, out, place, progress).run()
+                _Sweeper(store, design, blank, place, progress).run()
             except BrokenExecutor as error:
                 raise DerError(
                     f"a process of the executor died ({error}); what was finished is kept: go on "
                     "with --resume (resume=True)"
                 ) from error
-        if out is None:
+        if folder is None:
             return read_sweep(store)
-    return load_sweep(out)
+    return load_sweep(folder)
 
 
 @contextmanager
-def _store(out: str | os.PathLike[str] | None, resume: bool) -> Iterator[Store]:
+def _store(folder: Path | None, resume: bool) -> Iterator[Store]:
     """Open the tables of a sweep for the time of a ``with`` block."""
-    if out is None:
+    if folder is None:
         if resume:
             raise ValueError("a sweep in memory cannot be resumed: give out as well")
         with closing(Store()) as store:
             yield store
         return
-    folder = Path(out)
-    _check_folder(folder, resume)
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder} is a file, and a sweep goes to a folder: name another one")
+    if not is_sweep(folder) and folder.exists():
+        strangers = sorted(path.name for path in folder.iterdir() if path.name != LOCK)
+        if strangers:
+            needs = "a sweep needs an empty folder, and"
+            what = "there is no sweep to resume in" if resume else needs
+            holds = "which holds" if resume else "holds"
+            raise ValueError(f"{what} {folder} {holds} {strangers[0]}: name another folder")
     make_folder(folder)
     with locked(folder), closing(Store(folder / FILE)) as store:
         if not resume and store.description():
@@ -177,24 +185,12 @@ def _store(out: str | os.PathLike[str] | None, resume: bool) -> Iterator[Store]:
         yield store
 
 
-def _check_folder(folder: Path, resume: bool) -> None:
-    if folder.exists() and not folder.is_dir():
-        raise ValueError(f"{folder} is a file, and a sweep goes to a folder: name another one")
-    if is_sweep(folder) or not folder.exists():
-        return
-    strangers = sorted(path.name for path in folder.iterdir() if path.name != LOCK)
-    if strangers:
-        what = "there is no sweep to resume in" if resume else "a sweep needs an empty folder, and"
-        holds = "which holds" if resume else "holds"
-        raise ValueError(f"{what} {folder} {holds} {strangers[0]}: name another folder")
-
-
 def _begin(
     store: Store,
     scene: Scenario,
     description: dict[str, str],
     design: Design,
-    out: str | os.PathLike[str] | None,
+    out: Path | None,
 ) -> None:
     """Make the tables, or see that they are those of this sweep."""
     kept = store.description()
@@ -274,26 +270,15 @@ class _Sweeper:
     def __init__(
         self,
         store: Store,
-        scene: Scenario,
         design: Design,
-        description: dict[str, str],
-        out: str | os.PathLike[str] | None,
+        blank: Chunk,
         place: Place,
         progress: ProgressFunction | None,
     ) -> None:
         self._store = store
         self._place = place
         self._progress = progress
-        self._design = design
-        frames = description["frames"] == "yes" and out is not None
-        self._blank = Chunk(
-            scene=description["scene"],
-            source=scene.source,
-            paths=design.paths,
-            members=(),
-            verify=description["verify"] == "yes",
-            frames=str(Path(out).resolve() / FRAMES) if frames and out is not None else "",
-        )
+        self._blank = blank
         done, again = store.known(design.paths)
         first = store.request(design)
         self._left = _unfinished(enumerate(design, first), done, again)

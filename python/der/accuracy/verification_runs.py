@@ -288,8 +288,8 @@ class Runner:
         """
         self._workers.expect(total_weight(tasks.values()), later)
         outcomes = self._workers.run(tasks)
+        self.runs.cpu_seconds += sum(outcome.cpu_seconds for outcome in outcomes.values())
         for key, outcome in outcomes.items():
-            self.runs.cpu_seconds += outcome.cpu_seconds
             if outcome.error is None:
                 self.runs.results[key] = outcome.value()
             elif report:

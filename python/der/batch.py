@@ -10,15 +10,19 @@ import numpy as np
 
 from der import _core
 from der._core import EquilibriumReport, State
+from der.arguments import (
+    MOST,
+    NamedProbes,
+    check_apart,
+    check_value_list,
+    check_varied,
+    whole_number,
+)
 from der.errors import DerError, UnreliableResultWarning, warn
 from der.html import card
-from der.key_paths import check_apart, check_varied
-from der.named_probes import NamedProbes
 from der.recording import result_of
 from der.result import Result
 from der.scenario import SceneLike, load
-from der.value_lists import check_value_list
-from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -22,12 +22,12 @@ from numpy.typing import NDArray
 
 from der import _core
 from der._core import RunRecording, Scenario
+from der.arguments import MOST, whole_number
 from der.errors import DerError
 from der.interrupts import take_all_interrupts, take_one_interrupt
 from der.progress import ProgressFunction
 from der.result import Result
 from der.simulation import Simulation, recorded_result
-from der.whole_numbers import MOST, whole_number
 
 #: Status of a run that was cancelled.
 TOO_LONG = "too_long"

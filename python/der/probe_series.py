@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der.named_probes import NamedProbes
+from der.arguments import NamedProbes
 from der.tables import html_table, text_table
 
 

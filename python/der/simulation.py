@@ -14,9 +14,9 @@ from der import _core
 from der._core import RunRecording, Scenario
 from der.actuation_forces import ActuationForce, make_actuation_forces
 from der.analyses import Modes
+from der.arguments import NamedProbes
 from der.errors import UnreliableResultWarning, warn
 from der.html import card
-from der.named_probes import NamedProbes
 from der.progress import ProgressFunction, ProgressLine
 from der.reactions import Reaction, make_reactions
 from der.recording import Recording

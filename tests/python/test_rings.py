@@ -6,7 +6,7 @@ import der
 import numpy as np
 import pytest
 from der.accuracy.refinement import with_elements
-from der.accuracy.resampling import resample_ring
+from der.accuracy.resampling import resample
 from der.exporting.vtk_series import _Surfaces
 from der.fields import rod_fields
 from der.sections import at_nodes, directors_along, sections_of, swept
@@ -102,7 +102,7 @@ def test_figures_and_exports(result, tmp_path):
 
 
 def test_refined_rings_stay_round():
-    fine = resample_ring(circle(12), Fraction(3))
+    fine = resample(circle(12), Fraction(3), closed=True)
     assert fine.shape == (36, 3)
     assert fine[::3] == pytest.approx(circle(12), abs=1e-12)
     assert np.linalg.norm(fine, axis=1) == pytest.approx(1.0, abs=1e-3)
@@ -111,7 +111,7 @@ def test_refined_rings_stay_round():
 @pytest.mark.parametrize("first", [0, 1, 3])
 def test_refined_corners_of_rings_stay_corners(first):
     square = np.array([[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1.0]])
-    fine = resample_ring(np.roll(square, -first, axis=0), Fraction(2))
+    fine = resample(np.roll(square, -first, axis=0), Fraction(2), closed=True)
     assert fine.shape == (16, 2)
     on_side = (np.abs(fine - 1) == 1).any(axis=1)
     assert on_side.all()
@@ -125,7 +125,8 @@ def test_refined_straight_sides_of_rings_stay_straight(first):
     side = np.column_stack([np.arange(8) / 8, np.full(8, -0.3)])
     half = np.vstack([side, arc])
     ring = np.vstack([half, [1.0, 0.0] - half])
-    fine = np.roll(resample_ring(np.roll(ring, -first, axis=0), Fraction(4)), 4 * first, axis=0)
+    fine = resample(np.roll(ring, -first, axis=0), Fraction(4), closed=True)
+    fine = np.roll(fine, 4 * first, axis=0)
     assert fine[::4] == pytest.approx(ring, abs=1e-12)
     assert fine[:33, 1] == pytest.approx(-0.3, abs=1e-12)
     assert np.linalg.norm(fine[32:81] - [1.0, 0.0], axis=1) == pytest.approx(0.3, abs=1e-4)

@@ -8,6 +8,7 @@ import math
 import der
 import numpy as np
 import pytest
+from der.accuracy.study_comparison import Reference, converge_in_space
 from der.accuracy.study_plan import (
     choose_meshes,
     choose_steps,
@@ -15,7 +16,6 @@ from der.accuracy.study_plan import (
     reference_interval,
     reference_step,
 )
-from der.accuracy.study_reference import Reference, converge_in_space
 from der.accuracy.study_result import Study
 from der.accuracy.study_row import StudyRow, seconds_text
 from der.cli import main

@@ -12,7 +12,7 @@ import pytest
 from der.accuracy.error_bars import ErrorEstimate, estimate_error
 from der.accuracy.event_matching import match_places
 from der.accuracy.noise import ExactBelow, exact_below
-from der.accuracy.probe_extremes import parabola_top, probe_values
+from der.accuracy.readings import parabola_top, probe_values
 from der.accuracy.refinement import (
     curves_between_points,
     rods_that_cannot_be_refined,
@@ -22,14 +22,13 @@ from der.accuracy.refinement import (
 from der.accuracy.resampling import (
     find_corners,
     find_curvature_jumps,
-    resample_line,
+    resample,
     resample_list,
-    resample_ring,
 )
-from der.accuracy.static_verifier import StaticVerifier
-from der.accuracy.verification import Verification, VerifiedValue
+from der.accuracy.verification import Verification, with_digits_of
 from der.accuracy.verification_runs import VerificationRuns
-from der.accuracy.verification_table import with_digits_of
+from der.accuracy.verified_value import VerifiedValue
+from der.accuracy.verifier import Evaluation
 from der.cli import main
 from der.probe_series import ProbeSeries
 from scipy.integrate import solve_bvp
@@ -255,7 +254,7 @@ def test_arc_lengths_on_a_curve_move_with_their_element(half_circle):
 def test_corners_stay_corners():
     ell = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]])
     assert find_corners(ell) == [2]
-    finer = resample_line(ell, Fraction(2))
+    finer = resample(ell, Fraction(2))
     assert np.all((finer[:, 1] == 0.0) | (finer[:, 0] == 1.0))
     x = np.linspace(0.0, 8.0, 17)
     assert find_corners(np.column_stack([x, 0.1 * np.sin(x)])) == []
@@ -308,7 +307,7 @@ def test_jumps_of_the_curvature_stay_jumps(edges):
     circle: an error of sixth order."""
     points = crook(edges)
     assert find_curvature_jumps(points) == [edges]
-    finer = resample_line(points, Fraction(4))
+    finer = resample(points, Fraction(4))
     assert finer[: 4 * edges + 1, 1] == pytest.approx(0.0, abs=1e-12)
     radii = np.linalg.norm(finer[4 * edges :] - [0.5, 0.3], axis=1)
     turn = np.pi / 2 / edges
@@ -352,8 +351,7 @@ def test_new_nodes_of_a_curve_are_of_high_order(closed, other_curve):
         whole = 2.0 * np.pi if closed else 2.0
         turn = np.linspace(0.0, whole, elements + 1)[: -1 if closed else None]
         points = np.column_stack([np.cos(turn), np.sin(turn)])
-        resample = resample_ring if closed else resample_line
-        finer = resample(points, Fraction(4), other_curve=other_curve)
+        finer = resample(points, Fraction(4), closed=closed, other_curve=other_curve)
         errors.append(np.max(np.abs(np.linalg.norm(finer, axis=1) - 1.0)))
     least = (7.0 if other_curve else 5.0) + closed
     assert least - 0.3 < np.log2(errors[0] / errors[1]) < least + 2.0
@@ -365,7 +363,7 @@ def test_few_points_are_compared_with_a_lower_degree(edges):
     angle = np.linspace(0.0, 1.5, edges + 1)
     arc = np.column_stack([np.cos(angle), np.sin(angle)])
     usual, other = (
-        np.abs(np.linalg.norm(resample_line(arc, Fraction(2), other_curve=o), axis=1) - 1.0).max()
+        np.abs(np.linalg.norm(resample(arc, Fraction(2), other_curve=o), axis=1) - 1.0).max()
         for o in (False, True)
     )
     assert 0.0 < usual < 5.0 * other
@@ -384,11 +382,11 @@ def test_what_is_straight_between_corners_leaves_nothing_open(half_circle):
 
 def test_coarser_points_drop_nodes_but_no_corner():
     line = np.column_stack([np.arange(9.0), np.zeros(9)])
-    assert np.array_equal(resample_line(line, Fraction(1, 2)), line[::2])
+    assert np.array_equal(resample(line, Fraction(1, 2)), line[::2])
     with pytest.raises(ValueError, match="1/3"):
-        resample_line(line, Fraction(1, 3))
+        resample(line, Fraction(1, 3))
     with pytest.raises(ValueError, match="whole multiples"):
-        resample_line(line, Fraction(3, 2))
+        resample(line, Fraction(3, 2))
 
 
 def test_lists_with_a_jump_do_not_overshoot():
@@ -1080,16 +1078,15 @@ def test_an_event_that_only_finer_meshes_find_is_flagged(column):
     coarse = der.Scenario.from_dict(column)
     fine = with_elements(coarse, 2)
     runs = VerificationRuns(der.run(fine), meshes=["41 nodes", "21 nodes"])
-    runs.time[0] = runs.space[0] = runs.base
-    runs.space[1] = der.run(coarse)
-    verifier = StaticVerifier(runs)
-    event = next(v for v in verifier.values() if v.label == "factor, bifurcation 1")
+    runs.results = {("time", 0): runs.base, ("space", 0): runs.base, ("space", 1): der.run(coarse)}
+    values = Evaluation(runs).values()
+    event = next(v for v in values if v.label == "factor, bifurcation 1")
     assert math.isnan(event.value)
     assert event.flagged
     assert event.to_dict()["value"] is None
     found = Verification(fine, (event,), (), (), (), (), 0.0)
     assert str(found).splitlines()[3].split()[:4] == ["factor,", "bifurcation", "1", "-"]
-    assert len(verifier.notes()) == 1
+    assert len(Evaluation(runs).notes(values)) == 1
 
 
 def test_a_path_that_stops_before_its_last_factor_has_no_end(column):

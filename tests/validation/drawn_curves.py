@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import der
 import numpy as np
-from der.accuracy.static_readings import static_readings
+from der.accuracy.readings import read_run
 from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
@@ -65,7 +65,7 @@ class DrawnCurve:
 
         Extrapolated from the two finest drawings at the order of the rods, which is 2.
         """
-        found = [static_readings(der.run(self.scene(factor))) for factor in _FINE]
+        found = [read_run(der.run(self.scene(factor))) for factor in _FINE]
         truths = {}
         for label in found[0]:
             coarse, middle, fine = (readings[label].value for readings in found)

@@ -10,9 +10,8 @@ from pathlib import Path
 
 import der
 import pytest
-from der.accuracy.probe_extremes import probe_values
+from der.accuracy.readings import read_run
 from der.accuracy.refinement import with_elements, with_time
-from der.accuracy.static_readings import static_readings
 from der.accuracy.time_levels import find_stepper, fixed_step, save_every_step
 
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
@@ -68,15 +67,10 @@ def within_bars(path):
     """The scene's dimension; for each value, whether the truth is within its bar."""
     scenario = shortened(path)
     verification = der.verify(scenario)
-    exact = truth(verification.scenario)
-
-    def true_value(value):
-        if scenario.is_static:
-            return static_readings(exact)[value.label].value
-        return probe_values(exact, value.probe)[value.what]
+    exact = read_run(truth(verification.scenario))
 
     held = {
-        (path.stem, value.probe, value.what): abs(value.value - true_value(value))
+        (path.stem, value.probe, value.what): abs(value.value - exact[value.label].value)
         <= value.error_bar
         # The turning angle belongs to its mesh, and the truth stands on another one.
         or (value.space is None and len(verification.meshes) > 1)

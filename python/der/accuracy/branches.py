@@ -47,8 +47,7 @@ def distance(coarse: Result, fine: Result) -> float:
 
 def are_far_apart(coarse: Result, fine: Result) -> bool:
     """Whether two final shapes may be different solutions."""
-    size = max(rod.length for rod in coarse.rods)
-    return distance(coarse, fine) > _FAR * size
+    return distance(coarse, fine) > _FAR * max(rod.length for rod in coarse.rods)
 
 
 def are_mirrored(coarse: Result, fine: Result) -> bool:

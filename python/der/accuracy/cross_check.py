@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from der._core import Scenario
 from der.accuracy.refinement import with_time
@@ -34,29 +33,15 @@ _NOTABLE = 0.005
 
 
 def cross_check_halvings(cpu_seconds: float) -> int:
-    """Return how many times the finest step is to be halved.
-
-    Parameters
-    ----------
-    cpu_seconds
-        Cost of the finest level [s].
-    """
+    """Return how many times to halve the step of the finest level, which costs so much [s]."""
     affordable = _BUDGET / (_COST * max(cpu_seconds, 1e-6))
     return min(max(0, math.floor(math.log2(affordable))), _MOST_HALVINGS)
 
 
 def cross_check_scenario(scenario: Scenario, step: float) -> Scenario:
     """Return the scene with the stepper of the cross-check run and this step [s]."""
-    changed = with_time(
-        scenario,
-        integrator=CROSS_CHECK_STEPPER,
-        step=step,
-        tolerance=None,
-        minimum_step=None,
-        spectral_radius=None,
-        allow_unstable=None,
-        every=None,
-    )
+    own = ("tolerance", "minimum_step", "spectral_radius", "allow_unstable", "every")
+    changed = with_time(scenario, integrator=CROSS_CHECK_STEPPER, step=step, **dict.fromkeys(own))
     return save_every_step(changed, step)
 
 
@@ -65,35 +50,16 @@ def hidden_motion(
 ) -> float | None:
     """Return how far the cross-check run is from where the levels agree; None if it is not.
 
-    Parameters
-    ----------
-    coarse, fine
-        The two finest levels.
-    cross_check
-        The run with much smaller steps.
-    probe
-        Name of the probe to look at, over the second half of the run.
-    noise
-        Differences up to this are not significant.
-
-    Returns
-    -------
-    float or None
-        Largest difference in the second half, in the unit of the probe.
+    That is the largest difference in the second half of the run, in the unit of the probe, to the
+    finer of the two finest levels.
     """
     late = fine.times >= 0.5 * fine.times[-1]
-    times = fine.times[late]
-    expected = np.asarray(fine.probes[probe])[late]
-    away = _largest_difference(expected, cross_check, times, probe)
-    agreed = _largest_difference(expected, coarse, times, probe)
+
+    def largest_difference(other: Result) -> float:
+        values = np.interp(fine.times[late], other.times, np.asarray(other.probes[probe]))
+        return float(np.max(np.abs(values - np.asarray(fine.probes[probe])[late])))
+
+    away = largest_difference(cross_check)
     travelled = float(np.ptp(np.asarray(cross_check.probes[probe])))
-    if away > max(_CONTRADICTION * agreed, _NOTABLE * travelled, noise):
-        return away
-    return None
-
-
-def _largest_difference(
-    expected: NDArray[np.float64], other: Result, times: NDArray[np.float64], probe: str
-) -> float:
-    values = np.interp(times, other.times, np.asarray(other.probes[probe]))
-    return float(np.max(np.abs(values - expected)))
+    least = max(_CONTRADICTION * largest_difference(coarse), _NOTABLE * travelled, noise)
+    return away if away > least else None

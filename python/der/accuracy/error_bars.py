@@ -21,35 +21,21 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
-#: The verdict on a sequence:
-#:
-#: - ``converged``: at the expected order or faster;
-#: - ``exact``: refining changes nothing beyond rounding;
-#: - ``compared``: with one other way to draw the rods, which shows no order;
-#: - ``two levels``: the order could not be measured, since only one refinement was done;
-#: - ``settled``: the changes shrink by as much as order 1 would have it, but not as expected;
-#: - ``slow``: the changes shrink by less, at less than three quarters of the expected order;
-#: - ``diverging``: the changes grow;
-#: - ``oscillating``: the value oscillates, and the changes hardly shrink;
-#: - ``damped``: the stepper's own damping hides a motion;
-#: - ``contradicted``: another stepper with much smaller steps gives another value;
-#: - ``failed``: a finer run failed;
-#: - ``other branch``: a finer run ends in the mirror image of the shape, another solution;
-#: - ``unmatched``: not all meshes find it, such as a fold of a path.
+#: The verdict on a sequence.
 Verdict = Literal[
-    "converged",
-    "exact",
-    "compared",
-    "two levels",
-    "settled",
-    "slow",
-    "diverging",
-    "oscillating",
-    "damped",
-    "contradicted",
-    "failed",
-    "other branch",
-    "unmatched",
+    "converged",  # at the expected order or faster
+    "exact",  # refining changes nothing beyond rounding
+    "compared",  # with one other way to draw the rods, which shows no order
+    "two levels",  # the order could not be measured, since only one refinement was done
+    "settled",  # the changes shrink by as much as order 1 would have it, but not as expected
+    "slow",  # the changes shrink by less, at less than three quarters of the expected order
+    "diverging",  # the changes grow
+    "oscillating",  # the value oscillates, and the changes hardly shrink
+    "damped",  # the stepper's own damping hides a motion
+    "contradicted",  # another stepper with much smaller steps gives another value
+    "failed",  # a finer run failed
+    "other branch",  # a finer run ends in the mirror image of the shape, another solution
+    "unmatched",  # not all meshes find it, such as a fold of a path
 ]
 
 #: No order is seen, and the changes do not shrink: another level may tell more.
@@ -143,16 +129,31 @@ def estimate_error(
         return ErrorEstimate(
             correction, _FACTOR_OFF_ORDER * abs(correction) + noise, None, order, "two levels"
         )
-    trend = _trend(values, order, noise, ratio)
-    verdict = trend.verdict
+    limit = values[-1]
+    observed: float | None = None
+    verdict: Verdict = "converged"
+    factor = _FACTOR_OFF_ORDER
+    before, last = values[-2] - values[-3], values[-1] - values[-2]
+    if abs(last) <= noise:
+        pass  # the refinements before have removed the error
+    elif before * last <= 0.0:
+        verdict = "oscillating"
+    else:
+        observed = math.log(before / last) / math.log(ratio)
+        at_order = abs(observed - order) <= _NEAR_ORDER * order
+        used = order if at_order else min(max(observed, _LEAST_ORDER), order)
+        limit = values[-1] + last / (ratio**used - 1.0)
+        if at_order and len(values) == 3:
+            factor = _FACTOR_AT_ORDER
+        if observed <= 0.0:
+            verdict = "diverging"
+        elif observed < _SLOW * order:
+            verdict = "slow"
     if verdict in _UNSETTLED and changes[-1] <= _SETTLED * max(changes[:-1]):
-        verdict = "settled"
-    factor = _FACTOR_AT_ORDER if trend.at_order and len(values) == 3 else _FACTOR_OFF_ORDER
-    reached = (*values, trend.limit)
-    if verdict == "settled":
-        factor = _FACTOR_SETTLED
+        verdict, factor = "settled", _FACTOR_SETTLED
+    reached = (*values, limit)
     error_bar = factor * (max(reached) - min(reached)) + noise
-    return ErrorEstimate(trend.limit - values[0], error_bar, trend.order, order, verdict)
+    return ErrorEstimate(limit - values[0], error_bar, observed, order, verdict)
 
 
 def estimate_from_levels(
@@ -175,35 +176,24 @@ def estimate_drawing(
 ) -> ErrorEstimate:
     """Estimate the error from splines through points that are not the curve that they sample.
 
-    Parameters
-    ----------
-    by_level
-        Values on finer meshes, whose nodes lie on these splines.
-    others
-        The same on splines of another degree, whose own error is of a higher order.
-    noise
-        Differences up to this are not significant.
+    On the meshes of `others` the nodes lie on splines of another degree, whose own error is of a
+    higher order.
     """
-    levels = sorted(by_level.keys() & others.keys())
+    levels = by_level.keys() & others.keys()
     if not levels:
         return unknown_error("failed", _ORDER_OF_SPLINES)
     apart = max(abs(by_level[level] - others[level]) for level in levels)
-    verdict: Verdict = "compared" if apart > noise else "exact"
-    error_bar = noise + (_FACTOR_OFF_ORDER * apart if apart > noise else 0.0)
-    return ErrorEstimate(0.0, error_bar, None, _ORDER_OF_SPLINES, verdict)
+    if apart <= noise:
+        return ErrorEstimate(0.0, noise, None, _ORDER_OF_SPLINES, "exact")
+    error_bar = noise + _FACTOR_OFF_ORDER * apart
+    return ErrorEstimate(0.0, error_bar, None, _ORDER_OF_SPLINES, "compared")
 
 
 def on_one_branch(estimate: ErrorEstimate, mirrored: bool, largest: float) -> ErrorEstimate:
     """Say that the error is not known where levels end on different sides and the value shows it.
 
-    Parameters
-    ----------
-    estimate
-        From all levels.
-    mirrored
-        Whether a level ends in the mirror image of the shape of another.
-    largest
-        Largest absolute value in the run.
+    `mirrored` says that a level ends in the mirror image of the shape of another, `largest` is the
+    largest absolute value in the run.
     """
     if not mirrored or not _SAME_ON_BOTH_SIDES * largest < estimate.error_bar < math.inf:
         return estimate
@@ -213,30 +203,3 @@ def on_one_branch(estimate: ErrorEstimate, mirrored: bool, largest: float) -> Er
 def unknown_error(verdict: Verdict, order: float) -> ErrorEstimate:
     """Return an estimate without an error bar, with the reason."""
     return ErrorEstimate(0.0, math.inf, None, order, verdict)
-
-
-@dataclass(frozen=True)
-class _Trend:
-    """The extrapolated limit of the last three values of a sequence."""
-
-    limit: float
-    order: float | None
-    at_order: bool  # the expected one, within 10 %
-    verdict: Verdict
-
-
-def _trend(values: Sequence[float], order: float, noise: float, ratio: float) -> _Trend:
-    first, second = values[-2] - values[-3], values[-1] - values[-2]
-    if abs(second) <= noise:  # the refinements before have removed the error
-        return _Trend(values[-1], None, False, "converged")
-    if first * second <= 0.0:
-        return _Trend(values[-1], None, False, "oscillating")
-    observed = math.log(first / second) / math.log(ratio)
-    at_order = abs(observed - order) <= _NEAR_ORDER * order
-    used = order if at_order else min(max(observed, _LEAST_ORDER), order)
-    verdict: Verdict = "converged"
-    if observed <= 0.0:
-        verdict = "diverging"
-    elif observed < _SLOW * order:
-        verdict = "slow"
-    return _Trend(values[-1] + second / (ratio**used - 1.0), observed, at_order, verdict)

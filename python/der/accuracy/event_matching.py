@@ -12,11 +12,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from der._core import Model
 from der.accuracy.noise import noise_floor
-from der.accuracy.static_readings import Reading, Readings
+from der.accuracy.readings import Readings
 
 #: Two events farther apart than this, in the largest values of factor and probes, are not the same.
 _SAME_PLACE = 0.25
@@ -31,23 +30,15 @@ Place = dict[str, float]
 def numbered_as(reference: Readings, found: Readings, model: Model) -> Readings:
     """Return what was found on a path, with its events numbered as those of a reference.
 
-    An event that the reference lacks comes after all of those that it has.
-
-    Parameters
-    ----------
-    reference
-        The events of the mesh whose numbers hold.
-    found
-        The events of another mesh.
-    model
-        Its sizes tell what is rounding.
+    An event that the reference lacks comes after all of those that it has. The sizes of the model
+    tell what is rounding.
     """
     names: dict[str, str] = {}
     scales: dict[str, float] = {}
     for r in (*reference.values(), *found.values()):
         least = max(r.largest, _MUCH_NOISE * noise_floor(model, r.unit, math.inf, 0.0))
         scales[r.probe] = max(scales.get(r.probe, 0.0), least)
-    for kind in dict.fromkeys(r.kind for r in found.values() if _is_numbered(r)):
+    for kind in dict.fromkeys(r.kind for r in found.values() if re.search(r" \d+$", r.what)):
         here, there = _places(reference, kind, scales), _places(found, kind, scales)
         same = match_places(list(here.values()), list(there.values()))
         new = len(here)
@@ -76,12 +67,6 @@ def match_places(here: Sequence[Place], there: Sequence[Place]) -> dict[int, int
         for j, other in enumerate(there):
             alone = 0.5 * _SAME_PLACE + min(cost[i, j + 1], cost[i + 1, j])
             cost[i + 1, j + 1] = min(cost[i, j] + _distance(place, other), alone)
-    return _pairs(cost, here, there)
-
-
-def _pairs(
-    cost: NDArray[np.float64], here: Sequence[Place], there: Sequence[Place]
-) -> dict[int, int]:
     pairs = {}
     i, j = len(here), len(there)
     while i > 0 and j > 0:
@@ -97,10 +82,6 @@ def _pairs(
 
 def _distance(here: Place, there: Place) -> float:
     return max(abs(here[name] - there[name]) for name in here)
-
-
-def _is_numbered(reading: Reading) -> bool:
-    return re.search(r" \d+$", reading.what) is not None
 
 
 def _places(readings: Readings, kind: str, scales: Mapping[str, float]) -> dict[str, Place]:

@@ -17,30 +17,21 @@ _OF_SIZE = 1e-12
 #: The same for units with another rounding error: axial strain and force, a difference of two
 #: lengths over one of them, and velocities, a difference of two positions over a step.
 _OF_SIZES = {"": 1e-13, "N": 1e-13, "m/s": 16 * 2.2e-16}
+#: A value is exact if its error bar is less than this share of its size.
+_EXACT = 1e-9
+#: Coordinates are known to this share of the largest: a few times the last digit.
+_OF_COORDINATES = 8 * 2.2e-16
 
 
 def noise_floor(model: Model, unit: str, step: float, largest: float) -> float:
     """Return the size of differences that are not significant, in the unit of the probe.
 
-    Parameters
-    ----------
-    model
-        Its rods give the natural sizes: length L, bending moment EI/L, and so on.
-    unit
-        Unit of the probe.
-    step
-        Shortest time step [s]; infinite for a static scene.
-    largest
-        Largest absolute value of the probe in the run.
+    The rods of the model give the natural sizes: length L, bending moment EI/L, and so on. The
+    shortest `step` [s] is infinite for a static scene; `largest` is the largest absolute value of
+    the probe in the run.
     """
     share = _OF_SIZES.get(unit, _OF_SIZE)
     return _OF_VALUE * largest + share * characteristic_scale(model.rods, unit, step)
-
-
-#: A value is exact if its error bar is less than this share of its size.
-_EXACT = 1e-9
-#: Coordinates are known to this share of the largest: a few times the last digit.
-_OF_COORDINATES = 8 * 2.2e-16
 
 
 @dataclass(frozen=True)
@@ -70,14 +61,8 @@ NOTHING = ExactBelow()
 def exact_below(result: Result, unit: str, largest: float) -> ExactBelow:
     """Return below which error bars a value is exact.
 
-    Parameters
-    ----------
-    result
-        A run on the finest mesh, which has the largest errors by rounding.
-    unit
-        Unit of the probe.
-    largest
-        Largest absolute value of the probe in the run of the scene.
+    `result` is a run on the finest mesh, which has the largest errors by rounding; `largest` is the
+    largest absolute value of the probe in the run of the scene.
     """
     rods = result.model.rods
     size = characteristic_scale(rods, unit, 0.0)
@@ -85,17 +70,12 @@ def exact_below(result: Result, unit: str, largest: float) -> ExactBelow:
         size = max(rod.EI / rod.length**2 for rod in rods)
     # Far from the origin, a position is large by the choice of coordinates alone.
     scale = min(largest, size) if unit == "m" else largest
-    return ExactBelow(_EXACT * scale, _EXACT * size, _rounding_of_coordinates(result, unit))
-
-
-def _rounding_of_coordinates(result: Result, unit: str) -> float:
-    """Return how exact a quantity of edges and nodes can be with coordinates of 16 digits."""
     error = _OF_COORDINATES * float(np.max(np.abs(result.positions[-1])))
-    found = 0.0
-    for rod in result.model.rods:
+    coordinates = 0.0
+    for rod in rods:
         edge = float(np.min(np.diff(rod.line_arc_lengths)))
         angle, curvature = 2.0 * error / edge, 4.0 * error / edge**2
-        sizes = {
+        errors = {
             "m": error,
             "": angle,
             "rad": angle,
@@ -104,5 +84,5 @@ def _rounding_of_coordinates(result: Result, unit: str) -> float:
             "N": max(rod.EA * angle, rod.EI * curvature / edge),
             "N m": rod.EI * curvature,
         }
-        found = max(found, sizes.get(unit, 0.0))
-    return found
+        coordinates = max(coordinates, errors.get(unit, 0.0))
+    return ExactBelow(_EXACT * scale, _EXACT * size, coordinates)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from der._core import Scenario
-from der.accuracy.resampling import Array, arc_lengths, resample_line, resample_list, resample_ring
+from der.accuracy.resampling import Array, arc_lengths, resample, resample_list
 from der.scene_loads import kind_of
 
 #: Order of the rods in the length of their elements, and of every probe but the turning angle.
@@ -75,17 +75,8 @@ def with_elements(
 
     Old nodes stay where they are when `factor` is a whole number: supports, loads and probes keep
     their places, `{node: k}` becomes `{node: factor * k}`. Rods drawn by points get new nodes on a
-    smooth curve between corners (`der.accuracy.resampling`), lists with a value for each node are
-    interpolated.
-
-    Parameters
-    ----------
-    scenario
-        The scene.
-    factor
-        Factor of the number of elements; less than 1 makes the mesh coarser.
-    other_curve
-        Whether rods drawn by points take another curve through them, to compare with.
+    smooth curve between corners (`der.accuracy.resampling`), or on another one to compare with;
+    lists with a value for each node are interpolated. A factor less than 1 makes the mesh coarser.
 
     Raises
     ------
@@ -120,17 +111,12 @@ def with_time(scenario: Scenario, **changes: Any) -> Scenario:
     `every` stands for ``output.every``.
     """
     scene = scenario.to_dict()
-    if "every" in changes:
-        _set(scene.setdefault("output", {}), "every", changes.pop("every"))
     for key, value in changes.items():
-        _set(scene["time"], key, value)
+        table = scene.setdefault("output", {}) if key == "every" else scene["time"]
+        table.pop(key, None)
+        if value is not None:
+            table[key] = value
     return Scenario.from_dict(scene)
-
-
-def _set(table: dict[str, Any], key: str, value: Any) -> None:
-    table.pop(key, None)
-    if value is not None:
-        table[key] = value
 
 
 def _count_nodes(rod: dict[str, Any]) -> int:
@@ -140,8 +126,7 @@ def _count_nodes(rod: dict[str, Any]) -> int:
 
 
 def _count_elements(rod: dict[str, Any]) -> int:
-    nodes = _count_nodes(rod)
-    return nodes if rod.get("closed") else nodes - 1
+    return _count_nodes(rod) - (0 if rod.get("closed") else 1)
 
 
 def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -199,8 +184,8 @@ def _what_stands_on(scene: dict[str, Any], rod: dict[str, Any]) -> Iterator[dict
 
 
 def _resampled(rod: dict[str, Any], factor: Fraction, other_curve: bool) -> Array:
-    resample = resample_ring if rod.get("closed") else resample_line
-    return resample(np.array(rod["points"], dtype=float), factor, other_curve=other_curve)
+    points = np.array(rod["points"], dtype=float)
+    return resample(points, factor, closed=bool(rod.get("closed")), other_curve=other_curve)
 
 
 def _rest_arcs(rod: dict[str, Any], drawn: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -40,16 +41,6 @@ def find_corners(points: Array) -> list[int]:
     A corner is a turn of more than 60 degrees, or one of more than 0.1 that stands alone: three
     times what the line turns the same way at the nodes before and after. In a curve that is sampled
     finely enough to be computed with, neighbouring turns are alike (`model/corner.hpp`).
-
-    Parameters
-    ----------
-    points
-        Nodes [m], shape (nodes, dim).
-
-    Returns
-    -------
-    list of int
-        Node numbers, ascending.
     """
     size, axes = _turns(points)
     padded = np.pad(size[:, None] * axes, ((1, 1), (0, 0)))
@@ -64,16 +55,6 @@ def find_curvature_jumps(points: Array) -> list[int]:
     On either side of a node the curvature is that of the two nodes next to it, extrapolated. It
     jumps if the two values differ by more than twice what the extrapolations change and what the
     turn at the node differs from that of the two sides, all added (`model/curvature_jump.hpp`).
-
-    Parameters
-    ----------
-    points
-        Nodes [m], shape (nodes, dim).
-
-    Returns
-    -------
-    list of int
-        Node numbers, ascending.
     """
     beside = _BESIDE_JUMP
     inner = len(points) - 2
@@ -114,19 +95,24 @@ def _turns(points: Array) -> tuple[Array, Array]:
     return np.arctan2(sine, np.sum(before * after, axis=1)), axes
 
 
-def resample_line(points: Array, factor: Fraction, *, other_curve: bool = False) -> Array:
+def resample(
+    points: Array, factor: Fraction, *, closed: bool = False, other_curve: bool = False
+) -> Array:
     """Put `factor` times as many elements on a line; its nodes and corners keep their place.
 
     Between corners the new nodes lie on a spline through the old ones, over chord length, so that a
     curve drawn by points becomes rounder with every refinement. Straight parts stay straight. Where
-    the curvature of the points jumps, so does that of the spline.
+    the curvature of the points jumps, so does that of the spline. A ring without corners is one
+    periodic spline.
 
     Parameters
     ----------
     points
-        Nodes [m], shape (nodes, dim).
+        Nodes [m], shape (nodes, dim); the first is not repeated.
     factor
         A whole number, or one over a whole number that divides the number of elements.
+    closed
+        Whether the first node follows the last one.
     other_curve
         Whether to take splines of another degree. They differ from the usual ones about as much as
         these do from the smooth curve that the points sample.
@@ -136,96 +122,61 @@ def resample_line(points: Array, factor: Fraction, *, other_curve: bool = False)
     ValueError
         For any other factor, and where coarsening would cut a corner off.
     """
-    corners = find_corners(points)
-    if factor.numerator == 1:
-        return _every_nth(points, len(points) - 1, factor.denominator, corners)
-    _demand_whole(factor, len(points) - 1)
-    jumps = find_curvature_jumps(points)
-    return _refine_between(points, corners, jumps, factor.numerator, other_curve)
-
-
-def resample_ring(points: Array, factor: Fraction, *, other_curve: bool = False) -> Array:
-    """Put `factor` times as many elements on a closed line, as `resample_line` does on an open one.
-
-    A ring without corners is one periodic spline.
-
-    Parameters
-    ----------
-    points
-        Nodes [m], shape (nodes, dim); the first is not repeated.
-    factor, other_curve
-        As in `resample_line`.
-
-    Raises
-    ------
-    ValueError
-        As `resample_line`.
-    """
     count = len(points)
-    beside = _BESIDE_JUMP + 1
-    around = np.take(points, np.arange(-beside, count + beside), axis=0, mode="wrap")
+    elements = count if closed else count - 1
+    beyond = _BESIDE_JUMP + 1 if closed else 0  # nodes behind the ends of a ring that tell of them
+    around = np.take(points, np.arange(-beyond, count + beyond), axis=0, mode="wrap")
 
-    def on_ring(places: list[int]) -> list[int]:
-        return [i - beside for i in places if beside <= i < count + beside]
+    def places(find: Callable[[Array], list[int]]) -> list[int]:
+        return [i - beyond for i in find(around) if beyond <= i < count + beyond]
 
-    corners = on_ring(find_corners(around))
+    corners = places(find_corners)
+    step = factor.denominator
     if factor.numerator == 1:
-        return _every_nth(points, count, factor.denominator, corners)
-    _demand_whole(factor, count)
-    jumps = on_ring(find_curvature_jumps(around))
-    first = min(corners or jumps or [0])
-    rolled = np.roll(points, -first, axis=0)
-    line = np.vstack([rolled, rolled[:1]])
-    first_jumps = first in jumps
-    jumps = sorted((jump - first) % count for jump in jumps if jump != first)
-    if corners:
-        inner = [corner - first for corner in corners[1:]]
-        refined = _refine_between(line, inner, jumps, factor.numerator, other_curve)
-    else:
-        ends = "jump" if first_jumps else "smooth"
-        refined = _refine_leg(line, jumps, factor.numerator, other_curve, ends)
-    return np.roll(refined[:-1], first * factor.numerator, axis=0)
-
-
-def _demand_whole(factor: Fraction, elements: int) -> None:
-    if factor.denominator != 1:
+        if elements % step or any(corner % step for corner in corners):
+            raise ValueError(
+                f"a rod drawn by {count} points cannot do with 1/{step} of its elements"
+            )
+        return points[::step]
+    if step != 1:
         raise ValueError(f"a rod drawn by points takes whole multiples of its {elements} elements")
-
-
-def _refine_between(
-    points: Array, corners: list[int], jumps: list[int], factor: int, other_curve: bool
-) -> Array:
-    ends = [0, *corners, len(points) - 1]
+    jumps = places(find_curvature_jumps)
+    first = min(corners or jumps or [0]) if closed else 0  # where the line of a ring begins
+    line = np.roll(points, -first, axis=0)
+    if closed:
+        line = np.vstack([line, line[:1]])
+    inner = sorted((jump - first) % count for jump in jumps if jump != first or not closed)
+    ends = "free"
+    if closed and not corners:
+        ends = "jump" if jumps else "smooth"
+    bounds = [0, *(corner - first for corner in corners if corner > first), len(line) - 1]
     legs = [
         _refine_leg(
-            points[a : b + 1], [jump - a for jump in jumps if a < jump < b], factor, other_curve
+            line[a : b + 1],
+            [jump - a for jump in inner if a < jump < b],
+            factor.numerator,
+            other_curve,
+            ends,
         )
-        for a, b in itertools.pairwise(ends)
+        for a, b in itertools.pairwise(bounds)
     ]
-    return np.vstack([*(leg[:-1] for leg in legs), points[-1:]])
-
-
-def _every_nth(points: Array, elements: int, step: int, corners: list[int]) -> Array:
-    if elements % step or any(corner % step for corner in corners):
-        raise ValueError(
-            f"a rod drawn by {len(points)} points cannot do with 1/{step} of its elements"
-        )
-    return points[::step]
+    refined = np.vstack([*(leg[:-1] for leg in legs), line[-1:]])
+    return np.roll(refined[:-1], first * factor.numerator, axis=0) if closed else refined
 
 
 def _refine_leg(
-    points: Array, jumps: list[int], factor: int, other_curve: bool, ends: str = "free"
+    points: Array, jumps: list[int], factor: int, other_curve: bool, ends: str
 ) -> Array:
     """Put new nodes on the splines of a leg, one from each jump of the curvature to the next.
 
-    `ends` is "smooth" or "jump" for a ring whose two ends meet like this.
+    `ends` is "smooth" or "jump" for a ring whose two ends meet like this, "free" for other legs.
     """
     from scipy.interpolate import make_interp_spline  # here, because it takes long to load
 
     chord = arc_lengths(points)
     old = np.arange(len(points))
     new = np.interp(np.arange(factor * (len(points) - 1) + 1) / factor, old, chord)
-    if ends == "smooth" and not jumps:
+    if ends == "smooth":
         degree = _OTHER_DEGREE if other_curve else _DEGREE
         refined: Array = make_interp_spline(chord, points, degree, bc_type="periodic")(new)
         refined[::factor] = points
@@ -307,16 +258,7 @@ def resample_list(values: Array, elements: int, *, closed: bool = False) -> Arra
 
     Piecewise cubic and monotone between the old nodes (PCHIP), so that nothing overshoots. Where an
     open list jumps at a node, as a natural curvature does, each side has its own curve, up to the
-    value of the node, which is the mean of both.
-
-    Parameters
-    ----------
-    values
-        One value for each node, shape (nodes,) or (nodes, dim).
-    elements
-        Number of elements of the new mesh.
-    closed
-        Whether the first node follows the last one.
+    value of the node, which is the mean of both. In a closed list the first node follows the last.
     """
     from scipy.interpolate import PchipInterpolator
 

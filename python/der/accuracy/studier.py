@@ -2,38 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from der._core import Scenario
 from der.accuracy.default_probes import with_default_probes
 from der.accuracy.refinement import belongs_to_its_mesh, count_elements
-from der.accuracy.study_arguments import check_arguments
-from der.accuracy.study_comparison import Comparison, compare_over_time, compare_static
-from der.accuracy.study_costs import StudyCosts
-from der.accuracy.study_notes import (
-    DEFAULT_PROBES,
-    angle_note,
-    costly_step_note,
-    interval_note,
-    mesh_name,
-    missing_notes,
-    one_mesh_note,
-)
+from der.accuracy.study_comparison import Comparison, reference_tasks
 from der.accuracy.study_plan import (
     Mesh,
+    check_arguments,
     choose_meshes,
     choose_steppers,
     choose_steps,
+    common_interval,
     find_leading_rod,
     frame_interval,
     reference_interval,
-    reference_meshes,
     reference_step,
+    why_one_mesh,
+    with_finer_meshes,
 )
-from der.accuracy.study_reference import REFERENCE_STEPPER, reference_tasks
 from der.accuracy.study_result import Study
-from der.accuracy.study_runs import DynamicRuns, StaticRuns
-from der.accuracy.study_trial import Trial
+from der.accuracy.study_row import seconds_text
+from der.accuracy.study_runs import SKIPPED, StudyCosts, StudyRuns, Trial
 from der.errors import warn
 from der.parallel import Task, Workers, total_weight
 from der.progress import ProgressFunction
@@ -103,116 +95,103 @@ def study(
     given = load(scenario)
     warn(given.warnings)
     scene = with_default_probes(given)
-    notes = [] if scene is given else [DEFAULT_PROBES]
+    notes = []
+    if scene is not given:
+        notes.append("the scene has no probes: free ends and extreme points are shown")
     if scene.is_static and (steps is not None or steppers is not None):
         raise ValueError("a static scene has neither steps nor steppers: only nodes can be varied")
     meshes = choose_meshes(scene, nodes)
-    names = choose_steppers(steppers, scene)
+    tried = [""] if scene.is_static else choose_steppers(steppers, scene)
     workers = Workers(jobs, progress)
     workers.expect(1.0, later=_COST_OF_STUDY)
     outcome = workers.run({0: Task([scene])})[0]
-    study_ = _Study(
-        meshes,
-        outcome.value(),
-        StudyCosts(outcome.value(), outcome.cpu_seconds, max_seconds),
-        workers,
-        notes,
-    )
-    if scene.is_static:
-        return study_.of_statics()
-    return study_.of_motion(names, steps)
-
-
-class _Study:
-    """The order of the work: plan, run, compare, and put together what was found."""
-
-    def __init__(
-        self,
-        meshes: list[Mesh],
-        base: Result,
-        costs: StudyCosts,
-        workers: Workers,
-        notes: list[str],
-    ) -> None:
-        self._scenario = base.scenario
-        self._meshes = meshes
-        self._base = base
-        self._costs = costs
-        self._workers = workers
-        self._notes = notes
-        self._left_out = self._leave_out_angles()
-
-    def of_statics(self) -> Study:
-        """Run every mesh, and the reference."""
-        finer = self._reference_meshes()
-        runs = StaticRuns(self._meshes, self._costs)
-        references = reference_tasks(finer, None, 0.0, 0.0, self._costs.static_weight_per_node)
-        self._workers.expect(runs.weight + total_weight(references.values()))
-        trials = runs.run(self._workers)
-        comparison, disagreements = compare_static(
-            self._workers.run(references),
-            len(self._meshes),
-            [mesh_name(scenario) for scenario in finer.values()],
-            self._left_out,
-        )
-        self._notes += disagreements
-        return self._put_together(comparison, trials)
-
-    def of_motion(self, steppers: Sequence[str], steps: Sequence[float] | None) -> Study:
-        """Run every configuration, and the reference."""
-        finer = self._reference_meshes()
-        chosen = choose_steps(self._base, steps)
+    base = outcome.value()
+    costs = StudyCosts(base, outcome.cpu_seconds, max_seconds)
+    left_out = _leave_out_angles(base, notes)
+    finer = with_finer_meshes(meshes)
+    chosen, every, finest = [0.0], 0.0, 0.0
+    if not scene.is_static:
+        chosen = choose_steps(base, steps)
         if steps is None:
-            chosen = self._leave_out_costly_steps(chosen, list(finer.values())[-1])
-        every = reference_interval(self._base, chosen)
-        self._notes.append(interval_note(chosen, every, frame_interval(self._base)))
+            chosen = _leave_out_costly_steps(chosen, costs, finer[-1].scenario, notes)
+        every = reference_interval(base, chosen)
+        notes.append(_interval_note(chosen, every, frame_interval(base)))
         finest = reference_step(chosen[-1], every)
-        references = reference_tasks(
-            finer,
-            REFERENCE_STEPPER,
-            finest,
-            every,
-            self._costs.weight_per_node(REFERENCE_STEPPER, finest),
-        )
-        runs = DynamicRuns(self._meshes, steppers, chosen, steps is not None, every, self._costs)
-        self._workers.expect(total_weight(references.values()) + runs.weight)
-        trials = runs.run(self._workers)
-        units = {
-            name: probe.unit
-            for name, probe in self._base.probes.items()
-            if name not in self._left_out
-        }
-        outcomes = self._workers.run(references)
-        return self._put_together(
-            compare_over_time(outcomes, len(self._meshes), units, every), trials
-        )
+    references = reference_tasks(finer, finest, every, costs)
+    runs = StudyRuns(meshes, tried, chosen, steps is not None, every, costs)
+    workers.expect(total_weight(references.values()) + runs.weight)
+    trials = runs.run(workers)
+    comparison = Comparison(workers.run(references), finer, len(meshes), left_out, every)
+    notes += [*comparison.notes, *_missing_notes(trials, meshes, max_seconds)]
+    return Study(
+        scene,
+        tuple(comparison.rows(trials)),
+        comparison.sizes(),
+        tuple(notes),
+        comparison.noise(base.model, trials),
+    )
 
-    def _leave_out_angles(self) -> list[str]:
-        """Return the probes that cannot be compared: a turning angle belongs to its mesh."""
-        if find_leading_rod(self._scenario) is None:
-            self._notes.append(one_mesh_note(self._scenario))
-            return []
-        probes = list(self._base.probes)
-        angles = [name for name in probes if belongs_to_its_mesh(self._scenario, name)]
-        self._notes += map(angle_note, angles)
-        if len(angles) == len(probes) and not self._scenario.is_static:
-            raise ValueError("no probe can be compared between meshes; add one under output.probes")
-        return angles
 
-    def _reference_meshes(self) -> dict[int, Scenario]:
-        return reference_meshes(self._scenario, self._meshes)
+def _leave_out_angles(base: Result, notes: list[str]) -> list[str]:
+    """Return the probes that cannot be compared: a turning angle belongs to its mesh."""
+    scene = base.scenario
+    if find_leading_rod(scene) is None:
+        notes.append(f"nodes are not varied: {why_one_mesh(scene)}")
+        return []
+    angles = [name for name in base.probes if belongs_to_its_mesh(scene, name)]
+    notes += [
+        f"'{probe}' is left out: a turning angle belongs to its mesh; 'curvature' does not"
+        for probe in angles
+    ]
+    if len(angles) == len(base.probes) and not scene.is_static:
+        raise ValueError("no probe can be compared between meshes; add one under output.probes")
+    return angles
 
-    def _leave_out_costly_steps(self, steps: list[float], finest: Scenario) -> list[float]:
-        kept = self._costs.affordable_steps(steps, sum(count_elements(finest).values()))
-        self._notes += map(costly_step_note, reversed(steps[len(kept) :]))
-        return kept
 
-    def _put_together(self, comparison: Comparison, trials: Sequence[Trial]) -> Study:
-        self._notes += missing_notes(trials, self._meshes, self._costs.max_seconds)
-        return Study(
-            self._scenario,
-            tuple(comparison.rows(trials, self._meshes)),
-            comparison.sizes(),
-            tuple(self._notes),
-            comparison.noise(self._base.model, trials),
-        )
+def _leave_out_costly_steps(
+    steps: list[float], costs: StudyCosts, finest: Scenario, notes: list[str]
+) -> list[float]:
+    kept = costs.affordable_steps(steps, sum(count_elements(finest).values()))
+    notes += [
+        f"steps of {seconds_text(step)} are left out, for their cost"
+        for step in reversed(steps[len(kept) :])
+    ]
+    return kept
+
+
+def _interval_note(steps: Sequence[float], every: float, frames: float) -> str:
+    """Return when errors are measured: `every`, where the scene has `frames` so far apart [s]."""
+    note = f"errors are measured every {seconds_text(every)}"
+    if math.isclose(every, frames):
+        note += ", as the scene saves frames"
+    intervals = [(step, common_interval(step, every)) for step in steps]
+    rarer = [
+        f"with {seconds_text(step)} every {seconds_text(interval)}"
+        for step, interval in intervals
+        if not math.isclose(interval, every)
+    ]
+    if rarer:
+        note += ", or where a step does not reach all of these: " + ", ".join(rarer)
+    return note
+
+
+def _missing_notes(
+    trials: Sequence[Trial], meshes: Sequence[Mesh], max_seconds: float
+) -> list[str]:
+    """Return which configurations did not run to their end, and why."""
+    steps: dict[tuple[int, str, str], list[float]] = {}
+    for trial in sorted(trials, key=lambda trial: trial.tried.mesh):
+        if trial.result is None:
+            key = (trial.tried.mesh, trial.tried.stepper, trial.status)
+            steps.setdefault(key, []).append(trial.tried.step)
+    notes = []
+    for (mesh, stepper, status), own in steps.items():
+        what, when = meshes[mesh].name, ""
+        if stepper:
+            longest, shortest = seconds_text(max(own)), seconds_text(min(own))
+            what = f"{what}, {stepper}"
+            when = f" at {longest}" if longest == shortest else f" from {longest} to {shortest}"
+        if status == SKIPPED:
+            status = f"skipped, for more than {max_seconds:g} s of CPU time each"
+        notes.append(f"{what}: {status}{when}")
+    return notes

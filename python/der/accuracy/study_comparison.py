@@ -1,65 +1,185 @@
-"""Comparing the runs of a study with its reference."""
+"""Comparing the runs of a study with a reference, extrapolated in time and in space."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Model
 from der.accuracy.noise import noise_floor
-from der.accuracy.static_comparison import StaticComparison
-from der.accuracy.static_readings import static_readings
-from der.accuracy.study_plan import Mesh, common_interval
-from der.accuracy.study_reference import (
-    Reference,
-    converge_in_space,
-    converge_in_time,
-    static_reference,
-)
+from der.accuracy.readings import Readings, describe_counts, differing_kinds, read_run
+from der.accuracy.refinement import count_elements
+from der.accuracy.study_plan import Mesh, common_interval, with_step
 from der.accuracy.study_row import StudyRow
-from der.accuracy.study_trial import Trial
-from der.parallel import Outcome
+from der.accuracy.study_runs import StudyCosts, Trial
+from der.parallel import Outcome, Task
 from der.result import Result
 
 Array = NDArray[np.float64]
+#: Numbers of a run by name, at the times that runs are compared at, each of shape (times,).
+Series = dict[str, Array]
 
+#: Stepper of references: second order with a small error, and stable in the hardest scenes.
+REFERENCE_STEPPER = "tr_bdf2"
+_TIME_LEVELS = 3
 #: The finest meshes, which the reference is extrapolated from.
 _REFERENCE_MESHES = 3
+#: Newton's tolerances of references, far below the errors that are measured.
+_TIGHT = {"solver.residual_tolerance": 1e-12, "solver.step_tolerance": 1e-13}
 
 UNMATCHED = "unmatched"
 
 
+def reference_tasks(
+    meshes: Sequence[Mesh], step: float, every: float, costs: StudyCosts
+) -> dict[tuple[int, int], Task]:
+    """Return the runs that references on these meshes are made of, by mesh and level.
+
+    The coarsest level has this `step` [s], which two more halve; it is 0 for a scene without time.
+    """
+    stepper = REFERENCE_STEPPER if step > 0.0 else ""
+    per_node = costs.seconds(1.0, stepper, step) / costs.cpu_seconds
+    tasks = {}
+    for number, mesh in enumerate(meshes):
+        size = sum(count_elements(mesh.scenario).values())
+        for level in range(_TIME_LEVELS if stepper else 1):
+            varied = mesh.scenario
+            if stepper:
+                varied = with_step(varied, stepper, step / 2**level, every)
+            weight = per_node * size * 2.0**level
+            scenarios = [varied.with_(**_TIGHT), varied]
+            tasks[number, level] = Task(scenarios, weight, keep_motion=False)
+    return tasks
+
+
 @dataclass(frozen=True)
+class Reference:
+    """What runs are compared with, and by name its estimated largest error over all times."""
+
+    probes: Series
+    errors: dict[str, float]
+
+
+def extrapolate(levels: Sequence[Series], inherited: Mapping[str, float]) -> Reference:
+    """Extrapolate at second order from the first two and from the last two of three levels.
+
+    Each level halves the step, or the elements, of the one before. By how much the two differ
+    bounds the error of the better one; errors that the levels have themselves come on top, enlarged
+    as the extrapolation enlarges them.
+    """
+    probes, errors = {}, {}
+    for name in levels[0]:
+        coarse, middle, fine = (level[name] for level in levels)
+        better = fine + (fine - middle) / 3.0
+        worse = middle + (middle - coarse) / 3.0
+        probes[name] = better
+        errors[name] = float(np.max(np.abs(better - worse))) + 5.0 / 3.0 * inherited[name]
+    return Reference(probes, errors)
+
+
+def converge_in_space(meshes: Sequence[Reference]) -> Reference:
+    """Extrapolate references on three meshes, each with twice the elements of the one before."""
+    inherited = {name: max(mesh.errors[name] for mesh in meshes[1:]) for name in meshes[0].probes}
+    return extrapolate([mesh.probes for mesh in meshes], inherited)
+
+
+def _converge_in_time(levels: Sequence[Series]) -> Reference:
+    """Extrapolate a mesh from its levels in time; without time it has no error of its own."""
+    exact = dict.fromkeys(levels[0], 0.0)
+    return extrapolate(levels, exact) if len(levels) > 1 else Reference(levels[0], exact)
+
+
 class Comparison:
-    """The reference of a study, and how runs are compared with it.
+    """Compares the runs of a study with its reference.
+
+    It is made of the outcomes of `reference_tasks`, by mesh and level. The study itself has the
+    first `varied` of the meshes, which are coarsest first; the further ones are of the reference
+    only. The reference has the multiples of the interval `every` [s], which is 0 without time.
 
     Attributes
     ----------
+    notes
+        What meshes disagree on.
     units
         Units of the compared probes or numbers, by name.
-    on_mesh
-        For each mesh of the study, what it gives with time converged.
-    reference
-        Extrapolated in space as well.
-    series_of
-        Returns what can be compared of a run, by name.
-    every
-        The interval [s] whose multiples the reference has; 0 without time.
+
+    Raises
+    ------
+    ValueError
+        If nothing can be compared.
     """
 
-    units: Mapping[str, str]
-    on_mesh: Sequence[Reference]
-    reference: Reference
-    series_of: Callable[[Result], Mapping[str, Array]]
-    every: float = 0.0
+    def __init__(
+        self,
+        outcomes: Mapping[tuple[int, int], Outcome[Result]],
+        meshes: Sequence[Mesh],
+        varied: int,
+        left_out: Collection[str],
+        every: float,
+    ) -> None:
+        self.notes: list[str] = []
+        self._meshes = meshes
+        self._every = every
+        several = len(meshes) > varied
+        by_mesh = [
+            [outcomes[key].value() for key in sorted(outcomes) if key[0] == mesh]
+            for mesh in range(len(meshes))
+        ]
+        if every > 0.0:
+            probes = by_mesh[0][0].probes.items()
+            self.units = {name: probe.unit for name, probe in probes if name not in left_out}
+        else:
+            found = [read_run(result) for (result,) in by_mesh]
+            self._agreed = found[-1]
+            finest = found[-_REFERENCE_MESHES:] if several else found[-1:]
+            self.units = self._units_of_agreed(found, differing_kinds(finest), left_out)
+        on_meshes = [_converge_in_time([self._series(run) for run in runs]) for runs in by_mesh]
+        self._on_mesh = on_meshes[:varied]
+        # A scene with one mesh is its own reference.
+        finest_three = on_meshes[-_REFERENCE_MESHES:]
+        self._reference = converge_in_space(finest_three) if several else on_meshes[0]
+
+    def _units_of_agreed(
+        self, found: Sequence[Readings], apart: Collection[str], left_out: Collection[str]
+    ) -> dict[str, str]:
+        """Return the units of the numbers that the finest meshes agree to have found."""
+        runs = {mesh.name: own for mesh, own in zip(self._meshes, found, strict=True)}
+        self.notes = [
+            f"{'left out: ' if kind in apart else ''}{kind}: {describe_counts(kind, runs)}; which "
+            "are the same is not known"
+            for kind in differing_kinds(found)
+        ]
+        units = {
+            label: reading.unit
+            for label, reading in self._agreed.items()
+            if reading.kind not in apart and reading.probe not in left_out
+        }
+        if not units:
+            raise ValueError(
+                "nothing can be compared between meshes; add a probe under output.probes, or finer "
+                "meshes: " + "; ".join(self.notes)
+            )
+        return units
+
+    def _series(self, result: Result) -> Series:
+        """Return what can be compared of a run."""
+        if self._every > 0.0:
+            return {name: np.asarray(result.probes[name]) for name in self.units}
+        found = read_run(result)
+        apart = differing_kinds([found, self._agreed])
+        return {
+            label: np.array([found[label].value])
+            for label in self.units
+            if self._agreed[label].kind not in apart
+        }
 
     def sizes(self) -> dict[str, float]:
         """Return the scale of errors: a probe that hardly moves still has a magnitude."""
-        exact = self.reference.probes
+        exact = self._reference.probes
         return {
             name: float(max(np.ptp(exact[name]), np.max(np.abs(exact[name]))))
             for name in self.units
@@ -67,123 +187,52 @@ class Comparison:
 
     def noise(self, model: Model, trials: Sequence[Trial]) -> dict[str, float]:
         """Return what rounding leaves, by name."""
-        step = min((trial.step for trial in trials if trial.step > 0.0), default=math.inf)
-        exact = self.reference.probes
+        steps = [trial.tried.step for trial in trials if trial.tried.step > 0.0]
+        step = min(steps, default=math.inf)
+        exact = self._reference.probes
         return {
             name: noise_floor(model, unit, step, float(np.max(np.abs(exact[name]))))
             for name, unit in self.units.items()
         }
 
-    def rows(self, trials: Sequence[Trial], meshes: Sequence[Mesh]) -> list[StudyRow]:
+    def rows(self, trials: Sequence[Trial]) -> list[StudyRow]:
         """Return a row for each probe and trial."""
-        found = [{} if t.result is None else self.series_of(t.result) for t in trials]
+        found = [{} if t.result is None else self._series(t.result) for t in trials]
         return [
-            self._row(name, trial, meshes[trial.mesh].nodes, values.get(name))
+            self._row(name, trial, values.get(name))
             for name in self.units
             for trial, values in zip(trials, found, strict=True)
         ]
 
-    def _row(self, probe: str, trial: Trial, nodes: int, values: Array | None) -> StudyRow:
-        exact = self.reference.probes[probe]
-        on_mesh = self.on_mesh[trial.mesh].probes.get(probe)
+    def _row(self, probe: str, trial: Trial, values: Array | None) -> StudyRow:
+        mesh, stepper, step = astuple(trial.tried)
+        exact = self._reference.probes[probe]
+        on_mesh = self._on_mesh[mesh].probes.get(probe)
         missing = trial.result is not None and (values is None or on_mesh is None)
+        time_error = _largest_difference(values, self._at_frames_of(trial, on_mesh))
         return StudyRow(
             probe=probe,
             unit=self.units[probe],
-            nodes=nodes,
-            stepper=trial.stepper,
-            step=trial.step,
+            nodes=self._meshes[mesh].nodes,
+            stepper=stepper,
+            step=step,
             status=UNMATCHED if missing else trial.status,
             cpu_seconds=trial.cpu_seconds,
             error=_largest_difference(values, self._at_frames_of(trial, exact)),
             space_error=_largest_difference(on_mesh, exact),
-            time_error=(
-                _largest_difference(values, self._at_frames_of(trial, on_mesh))
-                if trial.stepper
-                else math.nan
-            ),
-            reference_error=self.reference.errors[probe],
-            interval=common_interval(trial.step, self.every) if trial.step > 0.0 else 0.0,
+            time_error=time_error if stepper else math.nan,
+            reference_error=self._reference.errors[probe],
+            interval=common_interval(step, self._every) if stepper else 0.0,
         )
 
     def _at_frames_of(self, trial: Trial, series: Array | None) -> Array | None:
         """Return what a reference has at the times that the run of a trial was saved at."""
-        if trial.result is None or series is None or not trial.stepper:
+        if trial.result is None or series is None or not trial.tried.stepper:
             return series
-        frames = np.rint(trial.result.times / self.every).astype(int)
+        frames = np.rint(trial.result.times / self._every).astype(int)
         frames[-1] = len(series) - 1  # the end of the run, be it a multiple or not
         at_frames: Array = series[frames]
         return at_frames
-
-
-def compare_over_time(
-    outcomes: Mapping[tuple[int, int], Outcome[Result]],
-    meshes: int,
-    units: Mapping[str, str],
-    every: float,
-) -> Comparison:
-    """Return the comparison of probes over time.
-
-    Parameters
-    ----------
-    outcomes
-        Outcomes of the runs of the reference, by mesh and level.
-    meshes
-        How many meshes the study has; the further ones are of the reference only.
-    units
-        Units of the probes that are compared, by name.
-    every
-        Between frames of the reference [s].
-    """
-    by_mesh = [
-        [outcomes[key].value() for key in sorted(outcomes) if key[0] == mesh]
-        for mesh in range(1 + max(mesh for mesh, _ in outcomes))
-    ]
-    converged = [converge_in_time(results, list(units)) for results in by_mesh]
-
-    def series_of(result: Result) -> dict[str, Array]:
-        return {name: np.asarray(result.probes[name]) for name in units}
-
-    return Comparison(units, converged[:meshes], _in_space(converged, meshes), series_of, every)
-
-
-def compare_static(
-    outcomes: Mapping[tuple[int, int], Outcome[Result]],
-    meshes: int,
-    names: Sequence[str],
-    left_out: Sequence[str],
-) -> tuple[Comparison, list[str]]:
-    """Return the comparison of numbers without time, and notes on what the meshes disagree on.
-
-    Parameters
-    ----------
-    outcomes
-        Outcomes of the runs of the reference, by mesh and level.
-    meshes
-        How many meshes the study has; the further ones are of the reference only.
-    names
-        Names of all meshes, for the notes.
-    left_out
-        Probes that are not compared.
-    """
-    found = [static_readings(outcomes[key].value()) for key in sorted(outcomes)]
-    reference_meshes = 1 if len(found) == meshes else _REFERENCE_MESHES
-    agreed = StaticComparison(dict(zip(names, found, strict=True)), reference_meshes, left_out)
-    converged = [static_reference(agreed.series(readings)) for readings in found]
-
-    def series_of(result: Result) -> dict[str, Array]:
-        return agreed.series(static_readings(result))
-
-    comparison = Comparison(
-        agreed.units, converged[:meshes], _in_space(converged, meshes), series_of
-    )
-    return comparison, agreed.notes
-
-
-def _in_space(converged: Sequence[Reference], meshes: int) -> Reference:
-    """Extrapolate from the finest meshes; a scene with one mesh is its own reference."""
-    varied = len(converged) > meshes
-    return converge_in_space(converged[-_REFERENCE_MESHES:]) if varied else converged[0]
 
 
 def _largest_difference(a: Array | None, b: Array | None) -> float:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from numbers import Integral, Real
+from typing import Any
 
 from der._core import Scenario, steppers
 from der.accuracy.refinement import (
@@ -30,20 +32,69 @@ _FEWEST_ELEMENTS = 4
 _MOST_FRAMES_APART = 1000
 
 
+def check_arguments(
+    nodes: Sequence[int] | None,
+    steps: Sequence[float] | None,
+    steppers: Sequence[str] | None,
+    max_seconds: float,
+) -> None:
+    """Refuse empty lists, and values that are none for any scene, before any work is done."""
+    if nodes is not None:
+        for count in _checked_list("nodes", nodes, "[21, 41]"):
+            if isinstance(count, bool) or not isinstance(count, Integral):
+                raise ValueError(f"nodes must be whole numbers, such as 21, got {count!r}")
+    if steps is not None:
+        _check_positive("steps", steps, "seconds", "[0.01, 0.005]")
+    if steppers is not None:
+        _checked_list("steppers", steppers, "['tr_bdf2']")
+    if not _is_number(max_seconds) or not max_seconds > 0.0:
+        raise ValueError(
+            f"max_seconds must be a number greater than 0, such as 2, got {max_seconds!r}"
+        )
+
+
+def check_errors(errors: Sequence[float]) -> None:
+    """Refuse errors that nobody can want advice for: they are finite and greater than 0."""
+    _check_positive("errors", errors, "units of the probes", "[0.001, 0.0001]")
+
+
+def _check_positive(name: str, values: Sequence[float], unit: str, example: str) -> None:
+    for value in _checked_list(name, values, example):
+        if not _is_number(value) or not 0.0 < value < math.inf:
+            raise ValueError(
+                f"{name} must be finite numbers greater than 0 in {unit}, such as {example}, got "
+                f"{value!r}"
+            )
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def _checked_list(name: str, values: Any, example: str) -> list[Any]:
+    try:
+        found = [] if isinstance(values, str) else list(values)
+    except TypeError:
+        found = []
+    if not found:
+        raise ValueError(
+            f"{name} must be a list with at least one entry, such as {example}, got {values!r}; "
+            "leave it out for the default"
+        )
+    return found
+
+
 @dataclass(frozen=True)
 class Mesh:
-    """A mesh of a study.
-
-    Attributes
-    ----------
-    nodes
-        Nodes of the rod that gives meshes their name.
-    scenario
-        The scene with this mesh.
-    """
+    """The scene with a mesh, named by the nodes of the first rod whose mesh can be varied."""
 
     nodes: int
     scenario: Scenario
+
+    @property
+    def name(self) -> str:
+        """What it is called: ``41 nodes``."""
+        return f"{self.nodes} nodes"
 
 
 def find_leading_rod(scenario: Scenario) -> str | None:
@@ -60,18 +111,9 @@ def why_one_mesh(scenario: Scenario) -> str:
 def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]:
     """Return the meshes to try, coarsest first.
 
-    Parameters
-    ----------
-    scenario
-        The scene.
-    nodes
-        Nodes of the leading rod; the elements of other rods are varied in proportion. Without it,
-        half, once, twice and four times the elements, as far as the scene allows.
-
-    Raises
-    ------
-    ValueError
-        If the scene cannot take one of `nodes`.
+    Those of the given numbers of nodes of the leading rod; the elements of other rods are varied in
+    proportion; a `ValueError` says which of them the scene cannot take. Without them half, once,
+    twice and four times the elements, as far as the scene allows.
     """
     rod = find_leading_rod(scenario)
     if rod is None:
@@ -82,78 +124,48 @@ def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]
                 f"{why_one_mesh(scenario)}; leave nodes out"
             )
         return [Mesh(own, scenario)]
-    if nodes is None:
-        return _default_meshes(scenario, rod)
-    return [_mesh(scenario, rod, count) for count in sorted(set(nodes))]
-
-
-def _mesh(scenario: Scenario, rod: str, nodes: int) -> Mesh:
-    if nodes < 2:
-        raise ValueError(f"a rod has at least 2 nodes, got {nodes}")
     elements = count_elements(scenario)[rod]
     ends = count_nodes(scenario)[rod] - elements  # 1, and 0 of a ring
-    factor = Fraction(nodes - ends, elements)
-    try:
-        return Mesh(nodes, with_elements(scenario, factor))
-    except ValueError as error:
-        raise ValueError(f"the scene cannot take {nodes} nodes: {error}") from error
-
-
-def _default_meshes(scenario: Scenario, rod: str) -> list[Mesh]:
     meshes = []
-    elements = count_elements(scenario)[rod]
-    ends = count_nodes(scenario)[rod] - elements
-    for factor in _DEFAULT_MESHES:
-        count = factor * elements
-        if count.denominator != 1 or (factor < 1 and count < _FEWEST_ELEMENTS):
-            continue
+    if nodes is None:
+        for factor in _DEFAULT_MESHES:
+            count = factor * elements
+            if count.denominator != 1 or (factor < 1 and count < _FEWEST_ELEMENTS):
+                continue
+            try:
+                meshes.append(Mesh(int(count) + ends, with_elements(scenario, factor)))
+            except ValueError:
+                continue  # a support in the middle, say, that has no node on this mesh
+        return meshes
+    for wanted in sorted(set(nodes)):
+        if wanted < 2:
+            raise ValueError(f"a rod has at least 2 nodes, got {wanted}")
         try:
-            meshes.append(_mesh(scenario, rod, int(count) + ends))
-        except ValueError:
-            continue  # a support in the middle, say, that has no node on this mesh
+            factor = Fraction(wanted - ends, elements)
+            meshes.append(Mesh(wanted, with_elements(scenario, factor)))
+        except ValueError as error:
+            raise ValueError(f"the scene cannot take {wanted} nodes: {error}") from error
     return meshes
 
 
-def finer(mesh: Mesh, factor: int) -> Mesh:
-    """Return a mesh with `factor` times the elements."""
-    refined = with_elements(mesh.scenario, factor)
-    counts = count_nodes(refined)
-    rod = find_leading_rod(refined) or next(iter(counts))
-    return Mesh(counts[rod], refined)
-
-
-def reference_meshes(scenario: Scenario, meshes: Sequence[Mesh]) -> dict[int, Scenario]:
-    """Return the meshes of a study by their place, and after them two finer ones if there can be.
-
-    Parameters
-    ----------
-    scenario
-        The scene.
-    meshes
-        Those of the study, coarsest first.
-    """
-    scenarios = [mesh.scenario for mesh in meshes]
-    if find_leading_rod(scenario) is not None:
-        scenarios += [finer(meshes[-1], factor).scenario for factor in (2, 4)]
-    return dict(enumerate(scenarios))
+def with_finer_meshes(meshes: Sequence[Mesh]) -> list[Mesh]:
+    """Return the meshes of a study, and after them two finer ones if there can be."""
+    finest = meshes[-1].scenario
+    rod = find_leading_rod(finest)
+    if rod is None:
+        return list(meshes)
+    finer = [with_elements(finest, factor) for factor in (2, 4)]
+    return [*meshes, *(Mesh(count_nodes(scenario)[rod], scenario) for scenario in finer)]
 
 
 def choose_steppers(names: Sequence[str] | None, scenario: Scenario) -> list[str]:
-    """Return the names of the steppers to try: those given, or all that the scene can have.
-
-    Raises
-    ------
-    ValueError
-        For a name that no stepper has.
-    """
-    if names is None:
-        return [info.name for info in steppers() if _can_have(scenario, info.name)]
-    return [find_stepper(name).name for name in dict.fromkeys(names)]
+    """Return the names of the steppers to try: those given, or all that the scene can have."""
+    if names is not None:
+        return [find_stepper(name).name for name in dict.fromkeys(names)]
+    return [info.name for info in steppers() if _can_have(scenario, info.name)]
 
 
 def _can_have(scenario: Scenario, stepper: str) -> bool:
-    if scenario.is_static:
-        return True
     try:
         with_step(scenario, stepper, scenario.duration, scenario.duration)
     except SceneError:
@@ -167,28 +179,22 @@ def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:
     These are around the scene's own step; where that comes from a tolerance or from the stability
     of an explicit stepper, they are shares of the duration. They are whole parts or multiples of
     the interval between frames, so that runs have values at the frames that the scene saves.
-
-    Raises
-    ------
-    ValueError
-        For a step that is not positive or longer than the run.
     """
     duration = base.scenario.duration
-    if steps is None:
-        middle, frames = _middle_step(base), frame_interval(base)
-        fitted = (_fitting_step(factor * middle, frames) for factor in _DEFAULT_STEPS)
-        around = list(dict.fromkeys(fitted))
-        return [step for step in around if duration >= _FEWEST_STEPS * step] or around[-1:]
-    for step in steps:
-        if not 0.0 < step <= duration:
-            raise ValueError(f"a step must lie between 0 and the duration, {duration:g} s: {step}")
-    return sorted(set(steps), reverse=True)
-
-
-def _middle_step(base: Result) -> float:
+    if steps is not None:
+        for step in steps:
+            if not 0.0 < step <= duration:
+                raise ValueError(
+                    f"a step must lie between 0 and the duration, {duration:g} s: {step}"
+                )
+        return sorted(set(steps), reverse=True)
+    middle = fixed_step(base)
     if "tolerance" in base.scenario.to_dict()["time"] or not stepper_of(base).implicit:
-        return base.scenario.duration / _FEWEST_STEPS_OF_RUN / _DEFAULT_STEPS[0]
-    return fixed_step(base)
+        middle = duration / _FEWEST_STEPS_OF_RUN / _DEFAULT_STEPS[0]
+    frames = frame_interval(base)
+    fitted = (_fitting_step(factor * middle, frames) for factor in _DEFAULT_STEPS)
+    around = list(dict.fromkeys(fitted))
+    return [step for step in around if duration >= _FEWEST_STEPS * step] or around[-1:]
 
 
 def _fitting_step(step: float, frames: float) -> float:
@@ -211,17 +217,8 @@ def frame_interval(base: Result) -> float:
 def reference_interval(base: Result, steps: Sequence[float]) -> float:
     """Return the interval [s] that contains the times at which any of these steps is compared.
 
-    Parameters
-    ----------
-    base
-        The scene as written; the interval is a whole multiple of that between its frames.
-    steps
-        All steps [s].
-
-    Raises
-    ------
-    ValueError
-        If a step misses all frames of the scene.
+    It is a whole multiple of that between the frames of the scene as written. A step that misses
+    all of these is a `ValueError`.
     """
     frames = frame_interval(base)
     return frames * math.gcd(*(_frames_apart(step, frames) for step in steps))
@@ -230,10 +227,7 @@ def reference_interval(base: Result, steps: Sequence[float]) -> float:
 def common_interval(step: float, frames: float) -> float:
     """Return the shortest interval [s] that is a multiple of `step` and of `frames` [s].
 
-    Raises
-    ------
-    ValueError
-        If there is none up to a thousand frames.
+    If there is none up to a thousand frames, that is a `ValueError`.
     """
     return frames * _frames_apart(step, frames)
 
@@ -258,14 +252,8 @@ def reference_step(shortest: float, interval: float) -> float:
 
 def with_step(scenario: Scenario, stepper: str, step: float, every: float) -> Scenario:
     """Return the scene with a stepper and a fixed step, frames `every` so many seconds."""
-    changes: dict[str, object] = {
-        "integrator": stepper,
-        "step": step,
-        "every": every,
-        "tolerance": None,
-        "minimum_step": None,
-        "allow_unstable": None,
-    }
+    changes: dict[str, object] = {"integrator": stepper, "step": step, "every": every}
+    changes |= dict.fromkeys(("tolerance", "minimum_step", "allow_unstable"))
     if stepper != "generalized_alpha":
         changes["spectral_radius"] = None
     return with_time(scenario, **changes)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from der._core import Scenario
-from der.accuracy.study_arguments import check_errors
+from der.accuracy.study_plan import check_errors
 from der.accuracy.study_row import StudyRow, seconds_text
 from der.output_paths import written_whole
 
@@ -88,12 +88,10 @@ class Study:
         for probe in self.probes:
             wanted = self._decades(probe) if errors is None else errors
             lines += [self._advice_line(probe, error) for error in wanted]
-            if not wanted and self.is_exact(probe):
-                lines.append(f"{probe}: exact in every configuration")
-            elif not wanted:
-                lines.append(
-                    f"{probe}: no configuration of this study is close enough: refine more"
-                )
+            if not wanted:
+                close = "no configuration of this study is close enough: refine more"
+                exact = "exact in every configuration"
+                lines.append(f"{probe}: {exact if self.is_exact(probe) else close}")
         return lines
 
     def is_exact(self, probe: str) -> bool:

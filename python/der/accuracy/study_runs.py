@@ -2,74 +2,117 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain
 
 from der._core import Scenario
-from der.accuracy.study_costs import StudyCosts, repeats
-from der.accuracy.study_plan import Mesh, common_interval, longest_of_halvings, with_step
-from der.accuracy.study_trial import SKIPPED, Trial, skipped_trial, trial_of
+from der.accuracy.study_plan import (
+    Mesh,
+    common_interval,
+    find_leading_rod,
+    longest_of_halvings,
+    with_step,
+)
 from der.accuracy.time_levels import find_stepper
 from der.errors import DerError
-from der.parallel import Task, Workers, total_weight
+from der.parallel import TOO_LONG, Task, Workers
+from der.result import Result
 from der.simulation import Simulation
 
+UNSTABLE, SKIPPED = "unstable", "skipped"
 #: Halvings of the scene's step in search of one that is stable for an explicit stepper.
 _MOST_HALVINGS = 30
 #: Steps that are tried for an explicit stepper from the longest stable one on.
 _EXPLICIT_STEPS = 2
+#: Runs are repeated while all of them together take less than this [s].
+_MEASURING_TIME = 0.3
+_MOST_REPEATS = 5
+#: The costliest run of the reference may take this many times what a configuration may.
+_REFERENCE_COST = 5.0
 
 
-class StaticRuns:
-    """The runs of a scene without time, one for each mesh.
+@dataclass(frozen=True)
+class Configuration:
+    """A mesh, by its place in the list of meshes, a stepper and a step [s].
 
-    Parameters
-    ----------
-    meshes
-        The meshes to try.
-    costs
-        Predicted costs of the runs.
+    Stepper and step are empty and 0 for a scene without time.
     """
 
-    def __init__(self, meshes: Sequence[Mesh], costs: StudyCosts) -> None:
-        self._tasks = {
-            i: Task(
-                [mesh.scenario],
-                costs.static_weight(mesh),
-                costs.static_repeats(mesh),
-                keep_motion=False,
-            )
-            for i, mesh in enumerate(meshes)
-        }
-
-    @property
-    def weight(self) -> float:
-        """The predicted cost of all of them, in the unit of `Task.weight`."""
-        return total_weight(self._tasks.values())
-
-    def run(self, workers: Workers) -> list[Trial]:
-        """Run them, one at a time."""
-        outcomes = workers.run(self._tasks, jobs=1)
-        return [trial_of(i, "", 0.0, outcome) for i, outcome in outcomes.items()]
+    mesh: int
+    stepper: str
+    step: float
 
 
-class DynamicRuns:
-    """The runs of a scene over time: every mesh with every stepper and its steps.
+@dataclass(frozen=True)
+class Trial:
+    """A configuration and how its run went.
 
-    Parameters
+    Attributes
     ----------
-    meshes
-        The meshes to try.
-    steppers
-        Names of the steppers to try.
-    steps
-        Steps to try [s], longest first.
-    explicit_too
-        Whether explicit steppers are run with `steps` as well; otherwise with the longest stable
-        step among the halvings of the longest, and the next.
-    every
-        The interval [s] whose multiples the reference has.
-    costs
-        Predicted costs of the runs.
+    status
+        As in ``summary.json``, ``unstable`` of an explicit stepper that failed, or ``skipped``.
+    result
+        None if it did not run to its end.
+    cpu_seconds
+        CPU time [s]; NaN if it did not run to its end.
+    """
+
+    tried: Configuration
+    status: str
+    result: Result | None = None
+    cpu_seconds: float = math.nan
+
+
+class StudyCosts:
+    """Predicts CPU times: they grow with the number of nodes and of steps.
+
+    The run of the scene as written took `cpu_seconds` [s], which is the unit of weights; a
+    configuration may take `max_seconds` [s].
+    """
+
+    def __init__(self, base: Result, cpu_seconds: float, max_seconds: float) -> None:
+        self.cpu_seconds = cpu_seconds
+        self.max_seconds = max_seconds
+        self._base = base
+        static = base.scenario.is_static
+        steps = 1 if static else max(1, int(base.summary.get("steps", 1)))
+        cost = 1.0 if static else find_stepper(str(base.summary["integrator"])).step_cost
+        self._seconds_per_step = cpu_seconds / (base.model.num_nodes * steps) / cost
+
+    def seconds(self, nodes: float, stepper: str, step: float) -> float:
+        """Return the expected CPU time [s] of a run with so many nodes in all."""
+        per_node = self._seconds_per_step
+        if stepper:
+            per_node *= find_stepper(stepper).step_cost * (self._base.scenario.duration / step)
+        return per_node * nodes
+
+    def affordable_steps(self, steps: Sequence[float], nodes: int) -> list[float]:
+        """Return the longest steps, given longest first, whose reference is affordable.
+
+        It is four times finer, on a mesh with this number of nodes. At least two are kept.
+        """
+        kept = list(steps)
+        per_step = self._seconds_per_step * nodes * self._base.scenario.duration
+        while len(kept) > 2 and 4.0 * per_step / kept[-1] > _REFERENCE_COST * self.max_seconds:
+            kept.pop()
+        return kept
+
+    def total_nodes(self, mesh: Mesh) -> float:
+        """Return the nodes of all rods, if all are refined as the one is that names the mesh."""
+        rod = find_leading_rod(self._base.scenario)
+        own_nodes = len(next(r for r in self._base.rods if rod in (None, r.name)).nodes)
+        return self._base.model.num_nodes * mesh.nodes / own_nodes
+
+
+class StudyRuns:
+    """Every mesh with every stepper and its steps.
+
+    Steps [s] are longest first; a scene without time has a stepper without a name and a step of 0.
+    Explicit steppers are run with these steps only if `explicit_too`, otherwise with the longest
+    stable step among the halvings of the longest, and the next. The reference has the multiples of
+    the interval `every` [s].
     """
 
     def __init__(
@@ -84,82 +127,94 @@ class DynamicRuns:
         self._meshes = meshes
         self._every = every
         self._costs = costs
-        first = longest_of_halvings(steps[0], every)
-        self._halvings = [first / 2**count for count in range(_MOST_HALVINGS)]
-        given = [name for name in steppers if explicit_too or find_stepper(name).implicit]
+        searched = [s for s in steppers if s and not explicit_too and not find_stepper(s).implicit]
         self._planned = [
-            (mesh, name, step) for mesh in range(len(meshes)) for name in given for step in steps
-        ]
-        #: The steps that are likely stable and so measured, by mesh and explicit stepper.
-        self._likely_stable = {
-            (mesh, name): self._stable_steps(mesh, name)
+            Configuration(mesh, stepper, step)
             for mesh in range(len(meshes))
-            for name in steppers
-            if name not in given
-        }
+            for stepper in steppers
+            if stepper not in searched
+            for step in steps
+        ]
+        longest = longest_of_halvings(steps[0], every) if searched else 0.0
+        self._searched = [
+            [Configuration(mesh, s, longest / 2**count) for count in range(_MOST_HALVINGS)]
+            for mesh in range(len(meshes))
+            for s in searched
+        ]
+        #: Of each search, the steps that are likely stable and so measured.
+        self._likely_stable = [self._stable_at_the_start(halvings) for halvings in self._searched]
 
     @property
     def weight(self) -> float:
         """The predicted cost of all of them, in the unit of `Task.weight`."""
-        likely = [(*key, step) for key, steps in self._likely_stable.items() for step in steps]
-        return sum(self._weight(*configuration) for configuration in (*self._planned, *likely))
+        return sum(map(self._weight, chain(self._planned, *self._likely_stable)))
 
     def run(self, workers: Workers) -> list[Trial]:
         """Run them, one at a time."""
-        trials = [
-            self._measure(*configuration, self._weight(*configuration), workers)
-            for configuration in self._planned
-        ]
-        for mesh, name in self._likely_stable:
-            trials += self._measure_explicit(mesh, name, workers)
+        trials = [self._measure(tried, self._weight(tried), workers) for tried in self._planned]
+        for halvings, announced in zip(self._searched, self._likely_stable, strict=True):
+            stable = 0
+            for tried in halvings:
+                weight = self._weight(tried) if tried in announced else 0.0
+                trials.append(self._measure(tried, weight, workers))
+                stable += trials[-1].result is not None
+                if stable == _EXPLICIT_STEPS or trials[-1].status == SKIPPED:
+                    break
         return trials
 
-    def _stable_steps(self, mesh: int, stepper: str) -> list[float]:
-        """Return the first halvings that are stable at the start of the run."""
-        steps = self._halvings
+    def _stable_at_the_start(self, halvings: list[Configuration]) -> list[Configuration]:
         refused = 0
-        while refused < len(steps) and self._is_refused(mesh, stepper, steps[refused]):
+        while refused < len(halvings) and self._is_refused(halvings[refused]):
             refused += 1
-        return steps[refused : refused + _EXPLICIT_STEPS]
+        return halvings[refused : refused + _EXPLICIT_STEPS]
 
-    def _is_refused(self, mesh: int, stepper: str, step: float) -> bool:
+    def _is_refused(self, tried: Configuration) -> bool:
         try:
-            Simulation(self._with_step(mesh, stepper, step))
+            Simulation(self._scenario(tried))
         except DerError:
             return True
         return False
 
-    def _with_step(self, mesh: int, stepper: str, step: float) -> Scenario:
-        every = common_interval(step, self._every)
-        return with_step(self._meshes[mesh].scenario, stepper, step, every)
+    def _scenario(self, tried: Configuration) -> Scenario:
+        scenario = self._meshes[tried.mesh].scenario
+        if not tried.stepper:
+            return scenario
+        every = common_interval(tried.step, self._every)
+        return with_step(scenario, tried.stepper, tried.step, every)
 
-    def _weight(self, mesh: int, stepper: str, step: float) -> float:
-        return self._costs.measuring_weight(self._meshes[mesh], stepper, step)
+    def _seconds(self, tried: Configuration) -> float:
+        nodes = self._costs.total_nodes(self._meshes[tried.mesh])
+        return self._costs.seconds(nodes, tried.stepper, tried.step)
 
-    def _measure(
-        self, mesh: int, stepper: str, step: float, weight: float, workers: Workers
-    ) -> Trial:
-        expected = self._costs.seconds(self._meshes[mesh], stepper, step)
-        if expected > self._costs.max_seconds:
-            return skipped_trial(mesh, stepper, step)
+    def _takes_too_long(self, tried: Configuration) -> bool:
+        return bool(tried.stepper) and self._seconds(tried) > self._costs.max_seconds
+
+    def _weight(self, tried: Configuration) -> float:
+        """Return the expected weight of all repeats; 0 of a run that takes too long."""
+        if self._takes_too_long(tried):
+            return 0.0
+        return self._seconds(tried) * self._repeats(tried) / self._costs.cpu_seconds
+
+    def _repeats(self, tried: Configuration) -> int:
+        return max(1, min(_MOST_REPEATS, int(_MEASURING_TIME / self._seconds(tried))))
+
+    def _measure(self, tried: Configuration, weight: float, workers: Workers) -> Trial:
+        if self._takes_too_long(tried):
+            return Trial(tried, SKIPPED)
         task = Task(
-            [self._with_step(mesh, stepper, step)],
+            [self._scenario(tried)],
             weight,
-            repeats(expected),
+            self._repeats(tried),
             keep_motion=False,
-            max_seconds=self._costs.max_seconds,
+            max_seconds=self._costs.max_seconds if tried.stepper else math.inf,
         )
-        return trial_of(mesh, stepper, step, workers.run({0: task}, jobs=1)[0])
-
-    def _measure_explicit(self, mesh: int, stepper: str, workers: Workers) -> list[Trial]:
-        """Halve the step until it is stable; measure that and the next ones."""
-        announced = self._likely_stable[mesh, stepper]
-        trials: list[Trial] = []
-        stable = 0
-        for step in self._halvings:
-            weight = self._weight(mesh, stepper, step) if step in announced else 0.0
-            trials.append(self._measure(mesh, stepper, step, weight, workers))
-            stable += trials[-1].result is not None
-            if stable == _EXPLICIT_STEPS or trials[-1].status == SKIPPED:
-                break
-        return trials
+        outcome = workers.run({0: task}, jobs=1)[0]
+        if outcome.error is None:
+            result = outcome.value()
+            return Trial(tried, result.status, result, outcome.cpu_seconds)
+        status = outcome.error.status
+        if status == TOO_LONG:
+            status = SKIPPED
+        elif tried.stepper and not find_stepper(tried.stepper).implicit:
+            status = UNSTABLE
+        return Trial(tried, status)

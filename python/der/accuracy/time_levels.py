@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Protocol
+from typing import Any
 
 from der._core import Model, Scenario, StepperInfo, steppers
 from der.accuracy.refinement import with_time
@@ -15,8 +15,12 @@ _FRAME_MEMORY = 64e6
 _ADAPTIVE_FRAMES = 2000
 
 
-class TimeLevels(Protocol):
+class TimeLevels:
     """Finer and finer ways to run a scene over time; level 0 is the scene as written.
+
+    Steps halve from level to level; of a scene with a tolerance that is a quarter each time. The
+    step control is there to keep the error proportional to the tolerance, so order 1 of the
+    tolerance is expected, whatever the stepper's own.
 
     Attributes
     ----------
@@ -24,80 +28,29 @@ class TimeLevels(Protocol):
         From one level to the next, the error is expected to shrink by ``ratio ** order``.
     """
 
-    order: float
-    ratio: float
+    def __init__(self, result: Result) -> None:
+        tolerance = result.scenario.to_dict()["time"].get("tolerance")
+        self._adaptive = tolerance is not None
+        self._coarsest = float(tolerance) if self._adaptive else fixed_step(result)
+        self._stepper_order = stepper_of(result).order
+        self.ratio = 4.0 if self._adaptive else 2.0
+        self.order = 1.0 if self._adaptive else float(self._stepper_order)
 
     def at(self, scenario: Scenario, level: int) -> Scenario:
         """Return the scene with the step or tolerance of a level, and frames to find extremes."""
-        ...
+        finer = self._coarsest / self.ratio**level
+        if self._adaptive:
+            return with_time(scenario, tolerance=finer, every=scenario.duration / _ADAPTIVE_FRAMES)
+        return save_every_step(scenario, finer)
 
     def label(self, level: int) -> str:
         """Return what is varied, with its unit."""
-        ...
+        finer = self._coarsest / self.ratio**level
+        return f"tolerance {finer:.3g}" if self._adaptive else f"{finer:.4g} s"
 
     def cost(self, level: int) -> float:
-        """Return how many times the cost of level 0 a level costs."""
-        ...
-
-
-class StepLevels:
-    """Steps of half the length from level to level."""
-
-    ratio = 2.0
-
-    def __init__(self, result: Result) -> None:
-        self._step = fixed_step(result)
-        self.order = float(stepper_of(result).order)
-
-    def at(self, scenario: Scenario, level: int) -> Scenario:
-        """Return the scene with the step of a level; it saves every step if memory allows."""
-        return save_every_step(scenario, self.step(level))
-
-    def label(self, level: int) -> str:
-        """Return the step."""
-        return f"{self.step(level):.4g} s"
-
-    def cost(self, level: int) -> float:
-        """Return how many times as many steps there are."""
-        return self.ratio**level
-
-    def step(self, level: int) -> float:
-        """Return the step of a level [s]."""
-        return self._step / self.ratio**level
-
-
-class ToleranceLevels:
-    """Tolerances a quarter as large from level to level.
-
-    The step control is there to keep the error proportional to the tolerance, so order 1 of the
-    tolerance is expected, whatever the stepper's own.
-    """
-
-    ratio = 4.0
-    order = 1.0
-
-    def __init__(self, result: Result, tolerance: float) -> None:
-        self._tolerance = tolerance
-        self._stepper_order = stepper_of(result).order
-
-    def at(self, scenario: Scenario, level: int) -> Scenario:
-        """Return the scene with the tolerance of a level."""
-        every = scenario.duration / _ADAPTIVE_FRAMES
-        return with_time(scenario, tolerance=self._tolerance / self.ratio**level, every=every)
-
-    def label(self, level: int) -> str:
-        """Return the tolerance."""
-        return f"tolerance {self._tolerance / self.ratio**level:.3g}"
-
-    def cost(self, level: int) -> float:
-        """Return how many times as many steps there are about."""
-        return float(self.ratio ** (level / self._stepper_order))
-
-
-def time_levels(result: Result) -> TimeLevels:
-    """Return the levels of the scene that a result comes from; not for a static one."""
-    tolerance = result.scenario.to_dict()["time"].get("tolerance")
-    return StepLevels(result) if tolerance is None else ToleranceLevels(result, float(tolerance))
+        """Return how many times as many steps there are, of a tolerance about."""
+        return float(self.ratio ** (level / self._stepper_order if self._adaptive else level))
 
 
 def fixed_step(result: Result) -> float:
@@ -115,18 +68,11 @@ def stepper_of(result: Result) -> StepperInfo:
 
 
 def find_stepper(name: str) -> StepperInfo:
-    """Return a stepper by its name.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
-    for info in steppers():
-        if info.name == name:
-            return info
-    names = ", ".join(info.name for info in steppers())
-    raise ValueError(f"there is no stepper {name!r}; there are: {names}")
+    """Return a stepper by its name; if there is none, a `ValueError` says which there are."""
+    by_name = {info.name: info for info in steppers()}
+    if name not in by_name:
+        raise ValueError(f"there is no stepper {name!r}; there are: {', '.join(by_name)}")
+    return by_name[name]
 
 
 def save_every_step(scenario: Scenario, step: float) -> Scenario:

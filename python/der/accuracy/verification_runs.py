@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Literal, get_args
 
 from der._core import Scenario
 from der.accuracy.branches import are_far_apart, are_mirrored, distance, shape_on
@@ -15,7 +15,7 @@ from der.accuracy.refinement import (
     rods_that_cannot_be_refined,
     with_elements,
 )
-from der.accuracy.time_levels import TimeLevels, stepper_of, time_levels
+from der.accuracy.time_levels import TimeLevels, stepper_of
 from der.errors import SceneError
 from der.parallel import Task, Workers, total_weight
 from der.result import Result
@@ -32,10 +32,12 @@ _FINEST = 4
 #: Newton's tolerances are tightened by this, down to the least that rounding allows.
 _TIGHTER = 1e-3
 _LEAST_TOLERANCE = 1e-13
-
-Axis = Literal["space", "time", "drawing", "cross-check"]
 #: Analyses of an equilibrium, which is one near the shape that they start from.
 _AT_REST = ("static", "modes")
+
+Axis = Literal["time", "space", "drawing", "cross-check"]
+AXES: tuple[Axis, ...] = get_args(Axis)
+#: A run of a verification: what it varies, and its level.
 Key = tuple[Axis, int]
 
 
@@ -47,21 +49,18 @@ class VerificationRuns:
     ----------
     base
         The scene as written.
-    levels
-        How many levels were asked for, the scene itself included.
     time_levels
         How time is refined; None for a static scene.
-    time, space
-        Results by level, with a tighter tolerance of Newton's method than the scene's. Space is
-        empty where no rod can be refined; levels that failed are missing.
-    drawing
-        One result by its level in space: with other curves through the points of rods that are
-        drawn by them; empty where that failed, or where there is none.
+    levels
+        How many levels were asked for, the scene itself included.
+    results
+        The other runs that did not fail, with a tighter tolerance of Newton's method than the
+        scene's: ``space`` and ``time`` by level; ``drawing``, with other curves through the points
+        of rods, by its level in space; ``cross-check`` with another stepper and much smaller steps
+        (`der.accuracy.cross_check`), unless the scene is static or has an explicit stepper, whose
+        steps are small already.
     curves
-        Names of these rods.
-    cross_check
-        The run with another stepper and much smaller steps (`der.accuracy.cross_check`); None for
-        static scenes and explicit steppers, whose steps are small already.
+        Names of the rods that are drawn by points.
     meshes, steps, notes
         As in `Verification`.
     cpu_seconds
@@ -69,13 +68,10 @@ class VerificationRuns:
     """
 
     base: Result
-    levels: int = 3
     time_levels: TimeLevels | None = None
-    time: dict[int, Result] = field(default_factory=dict)
-    space: dict[int, Result] = field(default_factory=dict)
-    drawing: dict[int, Result] = field(default_factory=dict)
+    levels: int = 3
+    results: dict[Key, Result] = field(default_factory=dict)
     curves: list[str] = field(default_factory=list)
-    cross_check: Result | None = None
     meshes: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -86,153 +82,114 @@ class VerificationRuns:
         """Whether there is a finer mesh."""
         return len(self.meshes) > 1
 
+    def of(self, axis: Axis) -> dict[int, Result]:
+        """Return the results of an axis by level."""
+        return {level: result for (own, level), result in self.results.items() if own == axis}
+
     @property
     def finest(self) -> Result:
         """The run on the finest mesh that did not fail."""
-        return self.space[max(self.space)] if self.space else self.base
+        space = self.of("space")
+        return space[max(space)] if space else self.base
 
-    def is_mirrored(self, axis: str) -> bool:
-        """Whether a level of an axis ends in the mirror image of the scene's shape.
-
-        The axes are ``space``, ``time`` and ``drawing``.
-        """
+    def is_mirrored(self, axis: Axis) -> bool:
+        """Whether a level of an axis ends in the mirror image of the scene's shape."""
         if self.base.path is not None or self.base.buckling is not None:
             return False  # what they find does not depend on the side
-        results: list[Result] = list(getattr(self, axis).values())
-        if axis == "time" and self.cross_check is not None:
-            results.append(self.cross_check)
+        results = [*self.of(axis).values()]
+        if axis == "time":
+            results += self.of("cross-check").values()
         return any(are_mirrored(self.base, found) for found in results)
 
 
-def run_levels(scenario: Scenario, levels: int | None, workers: Workers) -> Runner:
-    """Run a scene as written, and then on all levels in space and in time.
-
-    Parameters
-    ----------
-    scenario
-        With probes.
-    levels
-        2 or 3; None: 3 if that is affordable.
-    workers
-        Who runs them.
-
-    Returns
-    -------
-    Runner
-        With what was run, and for more levels (`Runner.refine`).
-
-    Raises
-    ------
-    SceneError, NotConvergedError, DivergedError
-        If the scene as written does not run to its end.
-    """
-    runs = _run_base(scenario, workers, _guess_rest(scenario, levels))
-    refined = _can_refine_space(runs)
-    if refined:
-        runs.curves = curves_between_points(scenario)
-    runs.levels = levels or _affordable_levels(runs, refined)
-    if refined:
-        runs.meshes = [_mesh_label(scenario, 2**level) for level in range(runs.levels)]
-    if runs.time_levels is not None:
-        runs.steps = [runs.time_levels.label(level) for level in range(runs.levels)]
-    runner = Runner(runs, workers)
-    runner.run()
-    return runner
-
-
-def _guess_rest(scenario: Scenario, levels: int | None) -> float:
-    """Return about how many times the cost of the scene as written all other runs have."""
-    finest = (levels or 3) - 1
-    doubled = 2.0 ** (finest + 1) - 1.0  # 1 + 2 + ... over all levels
-    if scenario.is_static:
-        return doubled
-    return doubled + (doubled - 1.0) + 2.0**finest  # in time, in space, and the cross-check run
-
-
-def _run_base(scenario: Scenario, workers: Workers, rest: float) -> VerificationRuns:
-    workers.expect(1.0, later=rest)
-    outcome = workers.run({0: Task([scenario])})[0]
-    failure = outcome.error
-    if failure is not None and not isinstance(failure, SceneError):
-        message = f"the scene itself fails, so there is nothing to verify: {failure}"
-        named = type(failure)(message, failure.status)
-        named.result = outcome.result
-        raise named from failure
-    base = outcome.value()
-    finest = None if scenario.is_static else time_levels(base)
-    return VerificationRuns(base, time_levels=finest, cpu_seconds=outcome.cpu_seconds)
-
-
-def _can_refine_space(runs: VerificationRuns) -> bool:
-    scenario = runs.base.scenario
-    fixed = rods_that_cannot_be_refined(scenario)
-    for rod, reason in fixed.items():
-        runs.notes.append(f"space not refined: {reason} (rod '{rod}')")
-    if len(fixed) == len(scenario.to_dict()["rods"]):
-        return False
-    try:
-        with_elements(scenario, 2)
-    except ValueError as error:
-        runs.notes.append(f"space not refined: {error}")
-        return False
-    return True
-
-
-def _affordable_levels(runs: VerificationRuns, refined: bool) -> int:
-    times_base = 4.0 if refined else 0.0
-    if runs.curves:
-        times_base += 2.0**_DRAWING_LEVEL
-    if runs.time_levels is not None:
-        times_base += 2.0 * runs.time_levels.cost(2)
-    if runs.cpu_seconds * times_base <= _BUDGET:
-        return 3
-    runs.notes.append("one refinement only, for its cost: the order is not measured")
-    return 2
-
-
-def _mesh_label(scenario: Scenario, factor: int) -> str:
-    counts = count_nodes(with_elements(scenario, factor))
-    return " + ".join(str(count) for count in counts.values()) + " nodes"
-
-
 class Runner:
-    """Fills in the runs of all levels.
+    """Runs a scene with probes as written, and then on all levels in space and in time.
 
-    Parameters
-    ----------
-    runs
-        With the base; the rest is filled in.
-    workers
-        Who runs them.
+    These are 2 or 3 levels; 3 without a number, if that is affordable. An error of the scene as
+    written is raised, those of other runs are noted.
 
     Attributes
     ----------
     runs
-        The runs so far, which are extended.
+        The runs so far, which `refine` extends.
     """
 
-    def __init__(self, runs: VerificationRuns, workers: Workers) -> None:
-        self.runs = runs
-        self._scenario = runs.base.scenario
+    def __init__(self, scenario: Scenario, levels: int | None, workers: Workers) -> None:
+        self._scenario = scenario
         self._workers = workers
-        self._finest = runs.levels - 1
-        self._explicit = runs.time_levels is not None and not stepper_of(runs.base).implicit
+        self.runs = runs = self._run_base(levels)
         self._base_seconds = runs.cpu_seconds
+        self._explicit = runs.time_levels is not None and not stepper_of(runs.base).implicit
+        refined = self._can_refine_space()
+        if refined:
+            runs.curves = curves_between_points(scenario)
+        runs.levels = levels or self._affordable_levels(refined)
+        if refined:
+            runs.meshes = [self._name("space", level) for level in range(runs.levels)]
+        if runs.time_levels is not None:
+            runs.steps = [self._name("time", level) for level in range(runs.levels)]
+        self._run_levels()
 
-    def run(self) -> None:
-        """Run all levels."""
-        tasks = self._time_tasks()
-        if not self._explicit:
-            tasks |= {key: self._task(key[1], 0) for key in self._space_keys() if key[1] > 0}
-            tasks |= self._drawing_tasks(0)
-        spaces = self._space_of_explicit(self._finest, self._finest) if self._explicit else {}
-        self._run(tasks, later=total_weight(spaces.values()))
+    def _run_base(self, levels: int | None) -> VerificationRuns:
+        static = self._scenario.is_static
+        finest = (levels or 3) - 1
+        rest = 2.0 ** (finest + 1) - 1.0  # about the cost of all other runs: 1 + 2 + ... in space
+        if not static:
+            rest += (rest - 1.0) + 2.0**finest  # in time, and the cross-check run
+        self._workers.expect(1.0, later=rest)
+        outcome = self._workers.run({0: Task([self._scenario])})[0]
+        failure = outcome.error
+        if failure is not None and not isinstance(failure, SceneError):
+            message = f"the scene itself fails, so there is nothing to verify: {failure}"
+            named = type(failure)(message, failure.status)
+            named.result = outcome.result
+            raise named from failure
+        base = outcome.value()
+        time_levels = None if static else TimeLevels(base)
+        return VerificationRuns(base, time_levels, cpu_seconds=outcome.cpu_seconds)
+
+    def _can_refine_space(self) -> bool:
+        fixed = rods_that_cannot_be_refined(self._scenario)
+        for rod, reason in fixed.items():
+            self.runs.notes.append(f"space not refined: {reason} (rod '{rod}')")
+        if len(fixed) == len(self._scenario.to_dict()["rods"]):
+            return False
+        try:
+            with_elements(self._scenario, 2)
+        except ValueError as error:
+            self.runs.notes.append(f"space not refined: {error}")
+            return False
+        return True
+
+    def _affordable_levels(self, refined: bool) -> int:
+        times_base = 4.0 if refined else 0.0
+        if self.runs.curves:
+            times_base += 2.0**_DRAWING_LEVEL
+        if self.runs.time_levels is not None:
+            times_base += 2.0 * self.runs.time_levels.cost(2)
+        if self._base_seconds * times_base <= _BUDGET:
+            return 3
+        self.runs.notes.append("one refinement only, for its cost: the order is not measured")
+        return 2
+
+    def _run_levels(self) -> None:
+        runs = self.runs
+        finest = runs.levels - 1
+        time_levels = range(runs.levels if runs.time_levels is not None else 1)
+        tasks = self._tasks([("time", level) for level in time_levels])
         if self._explicit:
-            if self.runs.space_is_refined:
-                self._run_space_of_explicit(self._finest)
-        elif self.runs.space_is_refined and 0 in self.runs.time:
-            self.runs.space[0] = self.runs.time[0]
-        self._follow_the_branch([*self._space_keys(), *self._drawing_tasks(0)])
+            spaces = self._tasks(self._space_keys(finest), finest)
+            self._run(tasks, later=total_weight(spaces.values()))
+            if spaces:
+                self._run_explicit_spaces(finest)
+        else:
+            if runs.time_levels is not None:
+                tasks["cross-check", 0] = self._cross_check(runs.time_levels)
+            tasks |= self._tasks([key for key in self._space_keys(finest) if key[1] > 0])
+            self._run(tasks)
+            if runs.space_is_refined and ("time", 0) in runs.results:
+                runs.results["space", 0] = runs.results["time", 0]
+        self._follow_the_branch(self._space_keys(finest))
 
     def refine(self, axes: Collection[str]) -> bool:
         """Run one more level in space, in time or both; tell whether there is one more now.
@@ -240,111 +197,89 @@ class Runner:
         There is none where it costs more than what is left of the budget, where the one before has
         failed, or where it fails itself.
         """
-        return any([self._refine_time("time" in axes), self._refine_space("space" in axes)])
+        names: dict[Axis, list[str]] = {"time": self.runs.steps, "space": self.runs.meshes}
+        added = [self._add_level(axis, own) for axis, own in names.items() if axis in axes]
+        return any(added)
 
-    def _refine_time(self, wanted: bool) -> bool:
-        level = len(self.runs.steps)
-        levels = self.runs.time_levels
-        if not wanted or levels is None or level - 1 not in self.runs.time:
+    def _add_level(self, axis: Axis, names: list[str]) -> bool:
+        level = len(names)
+        if level > _FINEST or (axis, level - 1) not in self.runs.results:
             return False
-        tasks: dict[Key, Task] = {("time", level): self._task(0, level)}
-        if not self._is_affordable(tasks, level) or not self._run(tasks, report=False):
+        many = self._explicit and axis == "space"
+        tasks = (
+            self._tasks(self._space_keys(level), level) if many else self._tasks([(axis, level)])
+        )
+        cost = self._base_seconds * total_weight(tasks.values())
+        if self.runs.cpu_seconds + cost > _BUDGET:
             return False
-        self.runs.steps.append(levels.label(level))
+        if not (self._run_explicit_spaces(level, False) if many else self._run(tasks, False)):
+            return False
+        names.append(self._name(axis, level))
+        if axis == "space":
+            self._follow_the_branch([(axis, level)])
         return True
 
-    def _refine_space(self, wanted: bool) -> bool:
-        level = len(self.runs.meshes)
-        if not wanted or level - 1 not in self.runs.space:
-            return False
-        if self._explicit:
-            tasks = self._space_of_explicit(level, level)
-            done = self._is_affordable(tasks, level) and self._run_space_of_explicit(level, False)
-        else:
-            tasks = {("space", level): self._task(level, 0)}
-            done = self._is_affordable(tasks, level) and self._run(tasks, report=False)
-        if done:
-            self.runs.meshes.append(_mesh_label(self._scenario, 2**level))
-            self._follow_the_branch([("space", level)])
-        return done
+    def _space_keys(self, finest: int) -> list[Key]:
+        """Return the runs by which meshes are compared, and curves through points."""
+        if not self.runs.space_is_refined:
+            return []
+        drawing: list[Key] = [("drawing", _DRAWING_LEVEL)] if self.runs.curves else []
+        return [*(("space", level) for level in range(finest + 1)), *drawing]
 
-    def _is_affordable(self, tasks: Mapping[Key, Task], level: int) -> bool:
-        seconds = self._base_seconds * total_weight(tasks.values())
-        return level <= _FINEST and self.runs.cpu_seconds + seconds <= _BUDGET
+    def _tasks(self, keys: Iterable[Key], time: int = 0) -> dict[Key, Task]:
+        """Return how runs are done, those that vary the mesh on a level in time."""
+        return {key: self._task(*key, time) for key in keys}
 
-    def _space_keys(self) -> list[Key]:
-        return [("space", n) for n in range(self.runs.levels)] if self.runs.space_is_refined else []
-
-    def _time_tasks(self) -> dict[Key, Task]:
-        tasks: dict[Key, Task] = {("time", 0): self._task(0, 0)}
-        if self.runs.time_levels is None:
-            return tasks
-        tasks |= {("time", n): self._task(0, n) for n in range(1, self.runs.levels)}
-        if not self._explicit:
-            tasks["cross-check", 0] = self._cross_check(self.runs.time_levels)
-        return tasks
-
-    def _drawing_tasks(self, time: int) -> dict[Key, Task]:
-        if not self.runs.curves:
-            return {}
-        return {("drawing", _DRAWING_LEVEL): self._task(_DRAWING_LEVEL, time, True)}
-
-    def _task(self, space: int, time: int, other_curve: bool = False) -> Task:
-        scenario = with_elements(self._scenario, 2**space, other_curve=other_curve)
-        levels = self.runs.time_levels
-        if levels is None:
-            return Task([_with_tight_newton(scenario), scenario], 2.0**space)
-        scenario = levels.at(scenario, time)
-        return Task([_with_tight_newton(scenario), scenario], 2.0**space * levels.cost(time))
+    def _task(self, axis: Axis, level: int, time: int) -> Task:
+        space, time = (0, level) if axis == "time" else (level, time)
+        scenario = with_elements(self._scenario, 2**space, other_curve=axis == "drawing")
+        cost = 2.0**space
+        if self.runs.time_levels is not None:
+            scenario = self.runs.time_levels.at(scenario, time)
+            cost *= self.runs.time_levels.cost(time)
+        return Task([_with_tight_newton(scenario), scenario], cost)
 
     def _cross_check(self, levels: TimeLevels) -> Task:
-        times_base = levels.cost(self._finest)
-        halvings = cross_check_halvings(times_base * self.runs.cpu_seconds)
-        times_base *= 2.0**halvings
+        times_base = levels.cost(self.runs.levels - 1)
+        times_base *= 2.0 ** cross_check_halvings(times_base * self._base_seconds)
         step = self._scenario.duration / int(self.runs.base.summary["steps"]) / times_base
         return Task([cross_check_scenario(self._scenario, step)], times_base)
 
-    def _run_space_of_explicit(self, finest: int, report: bool = True) -> bool:
+    def _run_explicit_spaces(self, finest: int, report: bool = True) -> bool:
         """Compare meshes at a step that is stable on the finest one; tell whether there is one.
 
         It shrinks with the elements where stretching sets it, with their square where bending does.
         """
         for time in (finest, 2 * finest):
-            tasks = self._space_of_explicit(finest, time)
-            key: Key = ("space", finest)
-            task = {key: tasks.pop(key)}
-            rest = total_weight(tasks.values())
-            if self._run(task, report=report and time > finest, later=rest):
+            tasks = self._tasks(self._space_keys(finest), time)
+            hardest: Key = ("space", finest)
+            first = {hardest: tasks.pop(hardest)}
+            later = total_weight(tasks.values())
+            if self._run(first, report=report and time > finest, later=later):
                 return self._run(tasks)
         return False
 
-    def _space_of_explicit(self, finest: int, time: int) -> dict[Key, Task]:
-        tasks: dict[Key, Task] = {("space", n): self._task(n, time) for n in range(finest + 1)}
-        return tasks | self._drawing_tasks(time)
-
     def _follow_the_branch(self, keys: Iterable[Key]) -> None:
         """Start levels that have come to another equilibrium from the shape of the scene's run."""
-        base = self.runs.base
+        base, results = self.runs.base, self.runs.results
         if self.runs.time_levels is not None or base.scenario.analysis not in _AT_REST:
             return
-        runs = {(axis, n): getattr(self.runs, axis).get(n) for axis, n in keys}
-        apart = {key: run for key, run in runs.items() if run and are_far_apart(base, run)}
-        outcomes = self._workers.run({key: self._task_from_the_shape(*key) for key in apart})
-        for (axis, level), outcome in outcomes.items():
+        apart = [key for key in keys if key in results and are_far_apart(base, results[key])]
+        tasks = {
+            key: replace(task, weight=0.0, start=shape_on(base, task.scenarios[0]))
+            for key, task in self._tasks(apart).items()
+        }
+        for key, outcome in self._workers.run(tasks).items():
             self.runs.cpu_seconds += outcome.cpu_seconds
             found = outcome.result
             if outcome.error is not None or found is None:
                 continue
-            if distance(base, found) < 0.5 * distance(base, apart[axis, level]):
-                getattr(self.runs, axis)[level] = found
+            if distance(base, found) < 0.5 * distance(base, results[key]):
+                results[key] = found
                 self.runs.notes.append(
-                    f"the run with {self._name(axis, level)} reached another equilibrium; it was "
+                    f"the run with {self._name(*key)} reached another equilibrium; it was "
                     "started again from the shape of the scene's own mesh, whose branch it follows"
                 )
-
-    def _task_from_the_shape(self, axis: Axis, level: int) -> Task:
-        task = self._drawing_tasks(0)[axis, level] if axis == "drawing" else self._task(level, 0)
-        return replace(task, weight=0.0, start=shape_on(self.runs.base, task.scenarios[0]))
 
     def _run(self, tasks: Mapping[Key, Task], report: bool = True, later: float = 0.0) -> bool:
         """Run tasks and keep the results of those that succeed; tell whether all did.
@@ -354,20 +289,17 @@ class Runner:
         self._workers.expect(total_weight(tasks.values()), later)
         outcomes = self._workers.run(tasks)
         self.runs.cpu_seconds += sum(outcome.cpu_seconds for outcome in outcomes.values())
-        for (axis, level), outcome in outcomes.items():
-            if outcome.error is not None:
-                if report:
-                    name = self._name(axis, level)
-                    self.runs.notes.append(f"the run with {name} failed: {outcome.error}")
-            elif axis == "cross-check":
-                self.runs.cross_check = outcome.value()
-            else:
-                getattr(self.runs, axis)[level] = outcome.value()
+        for key, outcome in outcomes.items():
+            if outcome.error is None:
+                self.runs.results[key] = outcome.value()
+            elif report:
+                self.runs.notes.append(f"the run with {self._name(*key)} failed: {outcome.error}")
         return all(outcome.error is None for outcome in outcomes.values())
 
     def _name(self, axis: Axis, level: int) -> str:
         if axis == "space":
-            return self.runs.meshes[level]
+            counts = count_nodes(with_elements(self._scenario, 2**level))
+            return " + ".join(map(str, counts.values())) + " nodes"
         if axis == "drawing":
             return OTHER_CURVES
         if axis == "cross-check":

@@ -102,22 +102,22 @@ class VerifiedValue:
         A part of the error that is less than a tenth of the whole bar, or negligible, does not
         count. None does of a value that is exact.
         """
-        return any(part.flagged for _, part in self._parts_that_count)
+        return any(part.flagged for part in self._parts_that_count.values())
 
     @property
     def unsettled(self) -> set[str]:
         """In which of ``space`` and ``time`` a finer level may still show that it converges."""
-        return {where for where, part in self._parts_that_count if part.unsettled}
+        return {where for where, part in self._parts_that_count.items() if part.unsettled}
 
     @property
     def settled(self) -> bool:
         """Whether a part that counts converges without the expected order."""
-        return any(part.verdict == "settled" for _, part in self._parts_that_count)
+        return any(part.verdict == "settled" for part in self._parts_that_count.values())
 
     @property
     def has_two_levels(self) -> bool:
         """Whether a part that counts was refined only once, so that its order is not known."""
-        return any(part.verdict == "two levels" for _, part in self._parts_that_count)
+        return any(part.verdict == "two levels" for part in self._parts_that_count.values())
 
     @property
     def is_limited_by_drawing(self) -> bool:
@@ -137,20 +137,21 @@ class VerifiedValue:
             return "exact" if self._has_all_digits else "rounding"
         found = [
             f"{part.verdict} in {where}"
-            for where, part in self._parts_that_count
+            for where, part in self._parts_that_count.items()
             if part.flagged or part.verdict in ("two levels", "settled")
         ]
         return ", ".join(found) or "converged"
 
     @property
-    def _parts_that_count(self) -> list[tuple[str, ErrorEstimate]]:
+    def _parts_that_count(self) -> dict[str, ErrorEstimate]:
         if self.is_exact:
-            return []
-        return [(where, part) for where, part in self._parts.items() if self._counts(part)]
-
-    def _counts(self, part: ErrorEstimate) -> bool:
+            return {}
         # Written so that an unknown bar, which is infinite, counts beside another one.
-        return part.error_bar > self.negligible and not part.error_bar < _COUNTS * self.error_bar
+        return {
+            where: part
+            for where, part in self._parts.items()
+            if part.error_bar > self.negligible and not part.error_bar < _COUNTS * self.error_bar
+        }
 
     @property
     def _parts(self) -> dict[str, ErrorEstimate]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Iterable
 from dataclasses import replace
 
-from der._core import Scenario
 from der.accuracy.cross_check import hidden_motion
 from der.accuracy.default_probes import with_default_probes
 from der.accuracy.error_bars import (
@@ -13,21 +13,20 @@ from der.accuracy.error_bars import (
     estimate_drawing,
     estimate_from_levels,
     on_one_branch,
+    unknown_error,
 )
+from der.accuracy.event_matching import numbered_as
 from der.accuracy.noise import exact_below, noise_floor
-from der.accuracy.probe_extremes import probe_values
+from der.accuracy.readings import Reading, describe_counts, read_run
 from der.accuracy.refinement import SPACE_ORDER, belongs_to_its_mesh
-from der.accuracy.static_verifier import StaticVerifier
-from der.accuracy.time_levels import TimeLevels
 from der.accuracy.verification import Verification
-from der.accuracy.verification_runs import VerificationRuns, run_levels
+from der.accuracy.verification_runs import AXES, OTHER_CURVES, Axis, Runner, VerificationRuns
 from der.accuracy.verified_value import SOLVER_FACTOR, VerifiedValue
+from der.arguments import whole_number
 from der.errors import warn
 from der.parallel import Workers
 from der.progress import ProgressFunction
-from der.result import Result
 from der.scenario import SceneLike, load
-from der.whole_numbers import whole_number
 
 #: Where the cross-check run contradicts, the error is at most this times the difference to it.
 _CROSS_CHECK_FACTOR = 1.25
@@ -90,198 +89,211 @@ def verify(
     given = load(scenario)
     warn(given.warnings)
     scene = with_default_probes(given)
-    runner = run_levels(scene, levels, Workers(jobs, progress))
+    runner = Runner(scene, levels, Workers(jobs, progress))
     runs = runner.runs
     if scene is not given:
         runs.notes.append("the scene has no probes: free ends and extreme points are shown")
-    values, notes = _evaluate(runs, scene)
+    found = Evaluation(runs)
+    values = found.values()
     while runs.levels > 2 and runner.refine(set().union(*(value.unsettled for value in values))):
-        values, notes = _evaluate(runs, scene)
+        found = Evaluation(runs)
+        values = found.values()
     return Verification(
         scenario=scene,
         values=tuple(values),
         meshes=tuple(runs.meshes),
         steps=tuple(runs.steps),
         warnings=tuple(runs.base.summary["warnings"]),
-        notes=(
-            *runs.notes,
-            *_notes_on_angles(runs, scene),
-            *_notes_on_drawing(runs, values),
-            *notes,
-        ),
+        notes=(*runs.notes, *found.notes(values)),
         cpu_seconds=runs.cpu_seconds,
     )
 
 
-def _evaluate(runs: VerificationRuns, scene: Scenario) -> tuple[list[VerifiedValue], list[str]]:
-    if runs.time_levels is None:
-        found = StaticVerifier(runs)
-        values = found.values()
-        return values, [*found.notes(), *_notes_on_branches(values)]
-    mirrored = {axis for axis in ("space", "time", "drawing") if runs.is_mirrored(axis)}
-    evaluated = [
-        _Evaluation(
-            runs,
-            runs.time_levels,
-            probe,
-            runs.space_is_refined and not belongs_to_its_mesh(scene, probe),
-            mirrored,
-        )
-        for probe in runs.base.probes
-    ]
-    values = [value for evaluation in evaluated for value in evaluation.values()]
-    return values, [*_notes_on_damping(runs, evaluated), *_notes_on_branches(values)]
+class Evaluation:
+    """Puts error bars on the numbers of a scene, which was run as written and on all levels."""
 
-
-def _notes_on_branches(values: list[VerifiedValue]) -> list[str]:
-    if not any("other branch" in value.verdict for value in values):
-        return []
-    return [
-        "it goes to one side, and on a finer level to the other, as its mirror image: nothing in "
-        "the scene says to which, so that rounding decides. A small force to one side does, or a "
-        "slight natural curvature"
-    ]
-
-
-def _notes_on_angles(runs: VerificationRuns, scene: Scenario) -> list[str]:
-    return [
-        f"'{probe}' is a turning angle, which belongs to its mesh: it has no error in space; "
-        "'curvature' has one"
-        for probe in runs.base.probes
-        if runs.space_is_refined and belongs_to_its_mesh(scene, probe)
-    ]
-
-
-def _notes_on_drawing(runs: VerificationRuns, values: list[VerifiedValue]) -> list[str]:
-    limited = [value.label for value in values if value.is_limited_by_drawing]
-    if not limited:
-        return []
-    named = ", ".join(f"'{label}'" for label in limited[:_MOST_NAMED])
-    more = f" and {len(limited) - _MOST_NAMED} more" if len(limited) > _MOST_NAMED else ""
-    rods = ", ".join(f"'{rod}'" for rod in runs.curves)
-    return [
-        f"the error of {named}{more} is mostly that of the drawing: the points of {rods} leave "
-        "open how the curve runs between them. Draw more points of the curve; finer meshes do not "
-        "tell"
-    ]
-
-
-def _notes_on_damping(runs: VerificationRuns, evaluated: list[_Evaluation]) -> list[str]:
-    notes = []
-    damped = [f"'{evaluation.probe}'" for evaluation in evaluated if evaluation.hidden_motion]
-    if damped:
-        notes.append(
-            f"in {', '.join(damped)} {runs.base.summary['integrator']} damps a motion away that "
-            "smaller steps keep: for the shape at rest use 'analysis: static', for the motion a "
-            "smaller step"
-        )
-    return notes
-
-
-class _Evaluation:
-    """The evaluation of the runs for one probe over time."""
-
-    def __init__(
-        self,
-        runs: VerificationRuns,
-        levels: TimeLevels,
-        probe: str,
-        measures_space: bool,
-        mirrored: Collection[str],
-    ) -> None:
+    def __init__(self, runs: VerificationRuns) -> None:
         self._runs = runs
-        self._levels = levels
-        self._mirrored = mirrored
-        self.probe = probe
-        self._series = runs.base.probes[probe]
-        self._space = self._by_level(runs.space) if measures_space else None
-        self._drawing = self._by_level(runs.drawing)
-        self._time = self._by_level(runs.time)
-        summary = self._series.summary
-        self._largest = max(abs(summary["min"]), abs(summary["max"]))
-        self._noise = self._find_noise()
-        self.hidden_motion = self._find_hidden_motion()
+        self._base = read_run(runs.base)
+        self._levels = {
+            axis: {
+                level: numbered_as(self._base, read_run(run), runs.base.model)
+                for level, run in runs.of(axis).items()
+            }
+            for axis in AXES
+        }
+        self._all = [self._base]
+        for axis, by_level in self._levels.items():
+            self._all += by_level.values() if axis != "cross-check" else []
+        self._mirrored = {axis for axis in AXES if runs.is_mirrored(axis)}
+        self._hidden_motion = self._find_hidden_motion()
 
-    def _by_level(self, results: dict[int, Result]) -> dict[int, dict[str, float]]:
-        return {level: probe_values(results[level], self.probe) for level in results}
-
-    def _find_noise(self) -> float:
-        base = self._runs.base
-        steps = int(base.summary["steps"]) * self._levels.cost(self._runs.levels - 1)
-        step = base.scenario.duration / steps
-        return noise_floor(base.model, self._series.unit, step, self._largest)
-
-    def _find_hidden_motion(self) -> float | None:
+    def _find_hidden_motion(self) -> dict[str, float]:
+        """Return how far each probe moves that levels in time agree to be at rest."""
+        runs = self._runs
         # Levels that were added later may have shorter steps than the cross-check run.
-        finest = sorted(level for level in self._runs.time if level < self._runs.levels)[-2:]
-        if self._runs.cross_check is None or len(finest) < 2:
-            return None
-        coarse, fine = (self._runs.time[level] for level in finest)
-        return hidden_motion(coarse, fine, self._runs.cross_check, self.probe, self._noise)
+        finest = sorted(level for level in self._levels["time"] if level < runs.levels)[-2:]
+        if not self._levels["cross-check"] or len(finest) < 2:
+            return {}
+        coarse, fine = (runs.results["time", level] for level in finest)
+        cross_check = runs.results["cross-check", 0]
+        found = {
+            probe: hidden_motion(coarse, fine, cross_check, probe, self._noise(self._base[probe]))
+            for probe in runs.base.probes
+        }
+        return {probe: away for probe, away in found.items() if away is not None}
 
     def values(self) -> list[VerifiedValue]:
-        """Return the final value and the extremes with their error bars."""
-        return [self._value(what) for what in probe_values(self._runs.base, self.probe)]
+        """Return every number with its error bar, also those that only finer meshes find."""
+        labels = dict.fromkeys(label for found in self._all for label in found)
+        return [
+            self._value(label)
+            if all(label in found for found in self._all)
+            else self._unmatched_value(label)
+            for label in labels
+        ]
 
-    def _value(self, what: str) -> VerifiedValue:
-        summary = self._series.summary
+    def _value(self, label: str) -> VerifiedValue:
+        reading = self._base[label]
+        noise = self._noise(reading)
+        time = self._time_error(reading, noise)
         # The scene as written against the same with every step saved and a tighter tolerance. At
         # the end of the run that is Newton's doing, at an extreme mostly the step between samples.
-        shift = self._time[0][what] - summary[what] if 0 in self._time else 0.0
-        time = self._time_error(what)
-        solver = self._noise
-        if what != "final":
+        tight = self._by_level("time", label)
+        shift = tight[0] - reading.at_steps if 0 in tight else 0.0
+        correction = shift
+        if time is not None and reading.what != "final":
             time = time.widened(abs(shift), shift)
-            shift = 0.0
+            correction = 0.0
         return VerifiedValue(
-            probe=self.probe,
-            what=what,
-            unit=self._series.unit,
-            value=summary[what],
-            time_of_value=summary.get(f"t_{what}", self._runs.base.summary["time"]),
-            space=self._space_error(what),
+            probe=reading.probe,
+            what=reading.what,
+            unit=reading.unit,
+            value=reading.at_steps,
+            time_of_value=reading.time,
+            space=self._space_error(reading, noise),
             time=time,
-            drawing=self._drawing_error(what),
-            solver=solver + SOLVER_FACTOR * abs(shift),
-            solver_correction=shift,
-            exact_below=exact_below(self._runs.finest, self._series.unit, self._largest),
-            negligible=_NEGLIGIBLE * (summary["max"] - summary["min"]),
+            drawing=self._drawing_error(reading, noise),
+            solver=noise + SOLVER_FACTOR * abs(correction),
+            solver_correction=correction,
+            exact_below=exact_below(self._runs.finest, reading.unit, reading.largest),
+            negligible=_NEGLIGIBLE * reading.travelled,
         )
 
-    def _space_error(self, what: str) -> ErrorEstimate | None:
-        if self._space is None:
+    def _unmatched_value(self, label: str) -> VerifiedValue:
+        reading = next(found[label] for found in self._all if label in found)
+        return VerifiedValue(
+            probe=reading.probe,
+            what=reading.what,
+            unit=reading.unit,
+            value=self._base[label].value if label in self._base else math.nan,
+            time_of_value=0.0,
+            space=unknown_error("unmatched", SPACE_ORDER),
+            time=None,
+            solver=self._noise(reading),
+        )
+
+    def _space_error(self, reading: Reading, noise: float) -> ErrorEstimate | None:
+        if not self._has_limit(reading.probe):
             return None
-        by_level = {level: values[what] for level, values in self._space.items()}
-        estimate = estimate_from_levels(by_level, SPACE_ORDER, self._noise)
-        return on_one_branch(estimate, "space" in self._mirrored, self._largest)
+        estimate = estimate_from_levels(self._by_level("space", reading.label), SPACE_ORDER, noise)
+        return on_one_branch(estimate, "space" in self._mirrored, reading.largest)
 
-    def _drawing_error(self, what: str) -> ErrorEstimate | None:
-        if self._space is None or not self._runs.curves:
+    def _drawing_error(self, reading: Reading, noise: float) -> ErrorEstimate | None:
+        if not self._runs.curves or not self._has_limit(reading.probe):
             return None
-        values, others = (
-            {level: found[what] for level, found in levels.items()}
-            for levels in (self._space, self._drawing)
-        )
-        estimate = estimate_drawing(values, others, self._noise)
-        return on_one_branch(estimate, "drawing" in self._mirrored, self._largest)
+        values = self._by_level("space", reading.label)
+        others = self._by_level("drawing", reading.label)
+        estimate = estimate_drawing(values, others, noise)
+        return on_one_branch(estimate, "drawing" in self._mirrored, reading.largest)
 
-    def _time_error(self, what: str) -> ErrorEstimate:
-        by_level = {level: values[what] for level, values in self._time.items()}
-        estimate = estimate_from_levels(
-            by_level, self._levels.order, self._noise, self._levels.ratio
-        )
-        estimate = on_one_branch(estimate, "time" in self._mirrored, self._largest)
-        if self._runs.cross_check is None or 0 not in self._time or "time" in self._mirrored:
+    def _time_error(self, reading: Reading, noise: float) -> ErrorEstimate | None:
+        levels = self._runs.time_levels
+        if levels is None:
+            return None
+        values = self._by_level("time", reading.label)
+        cross_check = self._by_level("cross-check", reading.label)
+        estimate = estimate_from_levels(values, levels.order, noise, levels.ratio)
+        estimate = on_one_branch(estimate, "time" in self._mirrored, reading.largest)
+        if not cross_check or 0 not in values or "time" in self._mirrored:
             return estimate
-        away = abs(probe_values(self._runs.cross_check, self.probe)[what] - self._time[0][what])
-        damped = self.hidden_motion is not None
-        if what == "final" and self.hidden_motion is not None:
-            away = max(away, self.hidden_motion)
+        away = abs(cross_check[0] - values[0])
+        hidden = self._hidden_motion.get(reading.probe)
+        if reading.what == "final" and hidden is not None:
+            away = max(away, hidden)
         elif away <= estimate.error_bar:
             return estimate
         error_bar = max(estimate.error_bar, _CROSS_CHECK_FACTOR * away)
-        if away <= _LITTLE_NOISE * self._noise:
+        if away <= _LITTLE_NOISE * noise:
             return replace(estimate, error_bar=error_bar)
         return replace(
-            estimate, error_bar=error_bar, verdict="damped" if damped else "contradicted"
+            estimate,
+            error_bar=error_bar,
+            verdict="contradicted" if hidden is None else "damped",
         )
+
+    def _by_level(self, axis: Axis, label: str) -> dict[int, float]:
+        return {level: found[label].value for level, found in self._levels[axis].items()}
+
+    def _has_limit(self, probe: str) -> bool:
+        runs = self._runs
+        return runs.space_is_refined and not belongs_to_its_mesh(runs.base.scenario, probe)
+
+    def _noise(self, reading: Reading) -> float:
+        base, levels = self._runs.base, self._runs.time_levels
+        step = math.inf
+        if levels is not None:
+            steps = int(base.summary["steps"]) * levels.cost(self._runs.levels - 1)
+            step = base.scenario.duration / steps
+        return noise_floor(base.model, reading.unit, step, reading.largest)
+
+    def notes(self, values: list[VerifiedValue]) -> list[str]:
+        """Return what is to be told of the values, beside the notes on the runs."""
+        runs = self._runs
+        notes = [
+            f"'{probe}' is a turning angle, which belongs to its mesh: it has no error in space; "
+            "'curvature' has one"
+            for probe in runs.base.probes
+            if runs.space_is_refined and not self._has_limit(probe)
+        ]
+        if limited := [value.label for value in values if value.is_limited_by_drawing]:
+            more = f" and {len(limited) - _MOST_NAMED} more" if len(limited) > _MOST_NAMED else ""
+            notes.append(
+                f"the error of {_quoted(limited[:_MOST_NAMED])}{more} is mostly that of the "
+                f"drawing: the points of {_quoted(runs.curves)} leave open how the curve runs "
+                "between them. Draw more points of the curve; finer meshes do not tell"
+            )
+        notes += self._differences()
+        if self._hidden_motion:
+            notes.append(
+                f"in {_quoted(self._hidden_motion)} {runs.base.summary['integrator']} damps a "
+                "motion away that smaller steps keep: for the shape at rest use 'analysis: "
+                "static', for the motion a smaller step"
+            )
+        if any("other branch" in value.verdict for value in values):
+            notes.append(
+                "it goes to one side, and on a finer level to the other, as its mirror image: "
+                "nothing in the scene says to which, so that rounding decides. A small force to "
+                "one side does, or a slight natural curvature"
+            )
+        return notes
+
+    def _differences(self) -> list[str]:
+        """Return what not all runs of a scene without time have found."""
+        tight = self._levels["time"].get(0, self._base)
+        runs = {"the scene as written": self._base, "a tight tolerance": tight}
+        space = self._levels["space"]
+        runs |= {self._runs.meshes[level]: space[level] for level in sorted(space) if level > 0}
+        for found in self._levels["drawing"].values():
+            runs[OTHER_CURVES] = found
+        kinds = dict.fromkeys(
+            reading.kind
+            for found in self._all
+            for label, reading in found.items()
+            if not all(label in other for other in self._all)
+        )
+        return [f"{kind}: {describe_counts(kind, runs)}; not all are the same" for kind in kinds]
+
+
+def _quoted(names: Iterable[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names)

@@ -13,9 +13,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from der.arguments import whole_number_argument
 from der.output_paths import check_output_folder, make_folder, output_folder, written_whole
 from der.progress import progress_on_terminal
-from der.spelled_numbers import whole_number_argument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -70,7 +70,7 @@ def execute(arguments: argparse.Namespace) -> int:
     import matplotlib as mpl
 
     from der.accuracy.studier import study
-    from der.accuracy.study_arguments import check_errors
+    from der.accuracy.study_plan import check_errors
 
     if arguments.errors is not None:
         check_errors(arguments.errors)

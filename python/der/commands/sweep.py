@@ -16,10 +16,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from der.arguments import whole_number_argument
 from der.interrupts import exit_code, told
 from der.output_paths import output_folder
 from der.progress import progress_on_terminal
-from der.spelled_numbers import whole_number_argument
 
 if TYPE_CHECKING:
     from der.sweeps.executors import AnyExecutor

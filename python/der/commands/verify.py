@@ -12,9 +12,9 @@ import argparse
 import json
 
 from der.accuracy import verify
+from der.arguments import whole_number_argument
 from der.output_paths import output_file, written_whole
 from der.progress import progress_on_terminal
-from der.spelled_numbers import whole_number_argument
 
 _FLAGGED = 5
 

@@ -10,9 +10,9 @@ import numpy as np
 from gymnasium import Space
 from gymnasium.spaces import Box
 
+from der.arguments import MOST, whole_number
 from der.gym.episodes import Episodes
 from der.scenario import SceneLike
-from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -11,10 +11,10 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from der.arguments import MOST, whole_number
 from der.gym.episodes import Episodes
 from der.gym.play import Outcome, Play
 from der.gym.task import Task
-from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

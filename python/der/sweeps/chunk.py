@@ -7,18 +7,25 @@ from dataclasses import dataclass
 from functools import lru_cache
 from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from der._core import RunRecording, Scenario, __version__
-from der.accuracy.static_readings import Reading, static_readings
-from der.accuracy.verification import Verification
+from der.accuracy.readings import Reading, read_run
 from der.accuracy.verifier import verify
 from der.errors import DerError
 from der.parallel import attempt
 from der.simulation import recorded_result
 from der.sweeps.design import Member
-from der.sweeps.probe_columns import TOLD, WHEN, columns_of_probe, names_of_columns
-from der.sweeps.table import BROKEN, WARNINGS, Table, failed_row
+from der.sweeps.table import (
+    BROKEN,
+    TOLD,
+    WARNINGS,
+    WHEN,
+    Table,
+    columns_of_probe,
+    names_of_columns,
+    row_of,
+)
 
 _told = itemgetter(*TOLD, *WHEN)
 #: What a row has of the summary of a run: to ask for all of it takes as long as the rest of a row.
@@ -31,6 +38,10 @@ _OF_SUMMARY = (
 _THAT_FIND = ("modes", "buckling", "continuation")
 #: Run folders in a folder: file systems are slow with more.
 _FOLDERS = 1000
+
+#: What a row has of a run: values of ``summary.json``, None where a key is not in it, and what an
+#: analysis finds besides probes.
+_Reading: TypeAlias = tuple[dict[str, Any], list[Reading]]
 
 
 @dataclass(frozen=True)
@@ -91,7 +102,7 @@ def run_chunk(chunk: Chunk, tick: Callable[[], None] | None = None) -> Table:
         try:
             _run_member(scene, chunk, number, values, tick, table)
         except Exception as error:  # the other members are not to suffer from it
-            table.rows[before:] = [failed_row(number, BROKEN, f"{type(error).__name__}: {error}")]
+            table.rows[before:] = [row_of(number, BROKEN, f"{type(error).__name__}: {error}")]
     return table
 
 
@@ -117,11 +128,11 @@ def _run_member(
     try:
         varied = scene.with_(**dict(zip(chunk.paths, values, strict=True)))
     except DerError as error:
-        table.rows.append(failed_row(number, error.status, str(error)))
+        table.rows.append(row_of(number, error.status, str(error)))
         return
     out = run_folder(chunk.frames, number) if chunk.frames else None
     outcome = attempt(varied, _read, out=out, tick=tick)
-    message, seconds, verification = "", outcome.cpu_seconds, None
+    message, seconds, verification = None, outcome.cpu_seconds, None
     if chunk.verify and outcome.error is None:
         try:
             verification = verify(
@@ -131,76 +142,48 @@ def _run_member(
         except DerError as error:
             message = f"not verified: {error}"
     if outcome.error is not None:
-        table.rows.append(failed_row(number, outcome.error.status, str(outcome.error), seconds))
+        table.rows.append(row_of(number, outcome.error.status, str(outcome.error), seconds))
     else:
-        _add_row(table, number, outcome.value(), message, seconds)
-    if outcome.result is not None:  # a failed run has cost something, and may have warned
-        for name in ("steps", "newton_iterations", "unreliable_from"):
-            table.rows[-1][name] = outcome.result.summary[name]
-        if warnings := outcome.result.summary["warnings"]:
-            table.put(WARNINGS, "found", "", "\n".join(warnings))
+        summary, found = outcome.value()
+        table.rows.append(row_of(number, summary["status"], message, seconds))
+        _add_findings(table, summary, found, varied.factor_range is not None)
+    if outcome.result is None:
+        return
+    summary, _ = outcome.result  # a failed run has cost something, and may have warned
+    for name in ("steps", "newton_iterations", "unreliable_from"):
+        table.rows[-1][name] = summary[name]
+    if warnings := summary["warnings"]:
+        table.put(WARNINGS, "found", "", "\n".join(warnings))
     if verification is not None:
-        _add_error_bars(table, verification, outcome.value())
-
-
-@dataclass(frozen=True)
-class _Reading:
-    """The columns of a row that tell of a run.
-
-    Attributes
-    ----------
-    summary
-        The values of ``summary.json`` that the row has; None where a key is not in it.
-    found
-        What an analysis finds besides probes.
-    on_path
-        Whether the run is a path of equilibria, on which an extreme has the number of a point, and
-        no time.
-    """
-
-    summary: dict[str, Any]
-    found: tuple[Reading, ...]
-    on_path: bool
+        for value in verification.values:
+            of_probe = value.probe in summary["probes"] and value.what in TOLD
+            column = f"{value.probe}.{value.what}" if of_probe else value.label
+            table.put(f"{column}.error", "error", value.unit, value.error_bar)
+        table.put("flagged", "error", "", len(verification.flagged))
 
 
 def _read(scenario: Scenario, recording: RunRecording) -> _Reading:
     summary = {key: recording.summary_value(key) for key in _OF_SUMMARY}
-    found: tuple[Reading, ...] = ()
-    if scenario.analysis in _THAT_FIND and recording.error is None:
-        readings = static_readings(recorded_result(scenario, recording))
-        found = tuple(
-            reading for label, reading in readings.items() if label not in summary["probes"]
-        )
-    return _Reading(summary, found, scenario.factor_range is not None)
+    if scenario.analysis not in _THAT_FIND or recording.error is not None:
+        return summary, []
+    readings = read_run(recorded_result(scenario, recording))
+    return summary, [found for label, found in readings.items() if label not in summary["probes"]]
 
 
-def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds: float) -> None:
-    summary = reading.summary
-    row = table.begin(
-        member=number,
-        status=summary["status"],
-        message=message or None,
-        seconds=seconds,
-        version=__version__,
-    )
+def _add_findings(
+    table: Table, summary: dict[str, Any], found: list[Reading], on_path: bool
+) -> None:
+    """Put what a run has found into the last row."""
     for name, probe in summary["probes"].items():
         names = names_of_columns(name)
         if names[0] not in table.columns:
-            for column in columns_of_probe(name, probe["unit"], reading.on_path):
-                table.add(column)
-        row.update(zip(names, _told(probe), strict=True))
+            for column in columns_of_probe(name, probe["unit"], on_path):
+                table.columns.setdefault(column.name, column)
+        table.rows[-1].update(zip(names, _told(probe), strict=True))
     if summary["stability"] is not None:
         table.put("stability", "found", "", summary["stability"])
     out_of_plane = (summary["out_of_plane"] or {}).get("stability", "not_tested")
     if out_of_plane != "not_tested":
         table.put("stability out of plane", "found", "", out_of_plane)
-    for found in reading.found:
-        table.put(found.label, "found", found.unit, found.value)
-
-
-def _add_error_bars(table: Table, verification: Verification, reading: _Reading) -> None:
-    for value in verification.values:
-        of_probe = value.probe in reading.summary["probes"] and value.what in TOLD
-        name = f"{value.probe}.{value.what}" if of_probe else value.label
-        table.put(f"{name}.error", "error", value.unit, value.error_bar)
-    table.put("flagged", "error", "", len(verification.flagged))
+    for reading in found:
+        table.put(reading.label, "found", reading.unit, reading.value)

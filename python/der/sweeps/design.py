@@ -13,10 +13,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from der.key_paths import check_varied
-from der.spelled_numbers import read_number
+from der.arguments import check_varied, read_number, whole_number
 from der.sweeps.values import MOST_VALUES, Range, Values, as_values, stored
-from der.whole_numbers import whole_number
 
 #: The values of a member's parameters, in the order of the paths.
 Member = tuple[Any, ...]
@@ -165,25 +163,8 @@ def make_design(
 ) -> Design:
     """Check what a sweep is asked for, and return its members.
 
-    Parameters
-    ----------
-    vary
-        By parameter its values, as `as_values` takes them.
-    zipped
-        Whether the values are taken side by side.
-    sample
-        ``sobol:N`` or ``lhs:N``; N points in the space of all parameters. Of a list, each value has
-        an equal share.
-    seed
-        Where the sample starts.
-
-    Raises
-    ------
-    ValueError
-        For no parameter, values that are not spelled right, lists side by side of different
-        lengths, a range without a sample, more than `MOST_MEMBERS`, and a seed below 0.
-    TypeError
-        If `vary` is no dict of paths, or the seed no whole number.
+    `vary` has by parameter its values, as `as_values` takes them; the others are those of
+    `der.sweep`. In a sample, each value of a list has an equal share.
     """
     check_varied(vary)
     seed = whole_number("seed", seed, 0)

@@ -4,34 +4,23 @@ from __future__ import annotations
 
 from typing import Any
 
-from der._core import Scenario, quantities
+from der._core import Scenario
+from der.arguments import check_apart
 from der.errors import SceneError
-from der.key_paths import check_apart
 from der.sweeps.design import Design
-from der.sweeps.probe_columns import BARS_OF_PROBE, COLUMNS_OF_PROBE
 from der.sweeps.store import MOST_COLUMNS
-from der.sweeps.table import RUN_COLUMNS
+from der.sweeps.table import RUN_COLUMNS, TOLD, WHEN, probes_of, units_of_probes
 from der.sweeps.values import Range, stored
 
 
 def check_design(scene: Scenario, design: Design, verify: bool) -> None:
     """Find a mistake in a path, a value, or what the table can hold.
 
-    Raises
-    ------
-    SceneError
-        If the first member is not valid: a path that there is not, above all.
-    ValueError
-        For two paths to the same value, a whole number that is none, columns that cannot be, and a
-        probe that has different units in different members.
+    The first member that is not valid is a `SceneError`, all else a `ValueError`.
     """
     _check_members(scene, design)
     _check_columns(scene, design, verify)
     _check_units(scene, design)
-
-
-def _probes_of(scene: Scenario) -> dict[str, dict[str, Any]]:
-    return (scene.to_dict().get("output") or {}).get("probes") or {}
 
 
 def _check_members(scene: Scenario, design: Design) -> None:
@@ -43,7 +32,7 @@ def _check_members(scene: Scenario, design: Design) -> None:
     except SceneError:
         _check_whole_numbers(scene, design, first)
         raise
-    probes = _probes_of(scene)
+    probes = probes_of(scene)
     fixed = {column.name for column in RUN_COLUMNS} | {"stability"}
     for name in sorted(fixed & set(probes)):
         raise ValueError(
@@ -62,8 +51,8 @@ def _check_members(scene: Scenario, design: Design) -> None:
 
 def _check_columns(scene: Scenario, design: Design, verify: bool) -> None:
     """See that the table has room for all probes."""
-    probes = _probes_of(scene)
-    each = COLUMNS_OF_PROBE + (BARS_OF_PROBE if verify else 0)
+    probes = probes_of(scene)
+    each = len(TOLD) + len(WHEN) + (len(TOLD) if verify else 0)  # and error bars
     # One more tells the stability, and one how many values are flagged.
     room = MOST_COLUMNS - len(RUN_COLUMNS) - len(design.paths) - 2
     if len(probes) * each > room:
@@ -93,24 +82,17 @@ def _check_units(scene: Scenario, design: Design) -> None:
             continue
         seen.add(key)
         try:
-            units = _units(scene.with_(**dict(zip(design.paths, member, strict=True))))
+            varied = scene.with_(**dict(zip(design.paths, member, strict=True)))
         except SceneError:
             continue  # it will be a row that says so
-        for probe, unit in units.items():
+        units = {probe: unit or "1" for probe, unit in units_of_probes(varied).items()}
+        when = "s" if varied.factor_range is None else "points of a path"
+        for probe, unit in (units | {f"{probe}.t_min": when for probe in units}).items():
             if (other := first.setdefault(probe, unit)) != unit:
                 raise ValueError(
                     f"the probe '{probe}' has values in {other} in some members and in {unit} in "
                     "others, and a column has one unit: give each quantity a probe of its own"
                 )
-
-
-def _units(scene: Scenario) -> dict[str, str]:
-    """Return the unit of each probe, and of the times of its extremes."""
-    unit_of = {quantity.name: quantity.unit or "1" for quantity in quantities()}
-    probes = _probes_of(scene)
-    units = {name: unit_of[probe["quantity"]] for name, probe in probes.items()}
-    when = "points of a path" if scene.factor_range is not None else "s"
-    return units | {f"{name}.t_min": when for name in probes}
 
 
 def _check_whole_numbers(scene: Scenario, design: Design, first: dict[str, Any]) -> None:

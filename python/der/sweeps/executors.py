@@ -40,21 +40,11 @@ _WAITING = 1
 
 @dataclass(frozen=True)
 class Place:
-    """Where chunks are run.
-
-    Attributes
-    ----------
-    executor
-        Who runs them.
-    run
-        Runs one there.
-    workers
-        Returns how many run at once; clusters grow and shrink.
-    """
+    """Where chunks are run: by whom, the function that runs one there, and how many at once."""
 
     executor: Executor
     run: Callable[[Chunk], Table]
-    workers: Callable[[], int]
+    workers: Callable[[], int]  # clusters grow and shrink
 
     def at_once(self) -> int:
         """Return how many chunks the executor may have."""
@@ -65,19 +55,7 @@ class Place:
 def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]:
     """Give the place that a program names; without one, threads for the time of the block.
 
-    Parameters
-    ----------
-    executor
-        An executor of `concurrent.futures`, or a Dask client.
-    jobs
-        Threads; of an executor, how many chunks it runs at once, which it does not tell.
-
-    Raises
-    ------
-    TypeError
-        For anything else.
-    ValueError
-        For a Dask client that is closed.
+    `jobs` are threads; of an executor, how many chunks it runs at once, which it does not tell.
     """
     count = checked_jobs(jobs)
     if executor is None:
@@ -139,20 +117,7 @@ def run_packed(packed: bytes) -> Any:
 class Processes(CancellableExecutor, ProcessPoolExecutor):
     """Processes that stop when the ``with`` block around them fails, by Ctrl-C above all.
 
-    Attributes
-    ----------
-    count
-        How many.
-
-    Parameters
-    ----------
-    jobs
-        How many; as many as the machine has cores, unless given.
-
-    Raises
-    ------
-    ValueError, TypeError
-        If `jobs` is not a whole number of at least 1.
+    There are as many as the machine has cores, unless `jobs` says how many.
     """
 
     def __init__(self, jobs: int | None = None) -> None:
@@ -219,21 +184,9 @@ def lost_its_worker(error: BaseException) -> bool:
 
 
 def connect(address: str) -> Client:
-    """Return a client of a Dask scheduler.
+    """Return a client of a Dask scheduler: of ``tcp://HOST:PORT``, or of a scheduler's file.
 
-    Parameters
-    ----------
-    address
-        ``tcp://HOST:PORT``, or the path of the scheduler's file.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        Without the package distributed.
-    OSError
-        If nobody answers there.
-    ValueError
-        If it is neither.
+    Nobody who answers there is an `OSError`, anything else a `ValueError`.
     """
     try:
         from distributed import Client
@@ -254,15 +207,7 @@ def connect(address: str) -> Client:
 
 
 def _check_scheduler_file(path: Path) -> None:
-    """See that a file tells the address of a scheduler.
-
-    Dask stops at other files by an assertion.
-
-    Raises
-    ------
-    ValueError
-        If it does not.
-    """
+    """Refuse a file that does not tell the address of a scheduler: Dask asserts that it does."""
     if path.is_dir():
         raise ValueError("it is a folder")
     for _ in range(_TRIES):

@@ -20,12 +20,13 @@ from der.sweeps.design import Design, Member
 from der.sweeps.table import (
     OF_SURROUNDINGS,
     RUN_COLUMNS,
+    RUN_TYPES,
     TOO_WIDE,
     WARNINGS,
     Column,
     Kind,
     Table,
-    failed_row,
+    row_of,
 )
 from der.sweeps.values import stored
 
@@ -41,21 +42,8 @@ _PATIENCE = 60.0
 _SIGNS_OF_ANOTHER_FILE = ("not a database", "malformed", "no such column", "no such table")
 #: How many columns a table of SQLite has at most, as it is built by default.
 MOST_COLUMNS = 2000
-#: For the statuses of members that are to be run again, in a question.
-_PLACES = ", ".join("?" * len(OF_SURROUNDINGS))
 #: Types of columns: parameters are kept as they are given.
 _TYPES: dict[Kind, str] = {"parameter": "", "probe": "REAL", "found": "", "error": "REAL"}
-_RUN_TYPES = {
-    # Not the primary key, so that the numbers of SQLite's own rows grow as members are added.
-    "member": "INTEGER NOT NULL UNIQUE",
-    "status": "TEXT NOT NULL",
-    "message": "TEXT",
-    "seconds": "REAL",
-    "steps": "INTEGER",
-    "newton_iterations": "INTEGER",
-    "unreliable_from": "REAL",
-    "version": "TEXT NOT NULL",
-}
 
 
 def is_sweep(folder: str | os.PathLike[str]) -> bool:
@@ -65,13 +53,7 @@ def is_sweep(folder: str | os.PathLike[str]) -> bool:
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Keep other sweeps out of a folder for the time of a ``with`` block.
-
-    Raises
-    ------
-    DerError
-        If another one is writing there.
-    """
+    """Keep other sweeps out of a folder for the time of a ``with`` block."""
     with (folder / LOCK).open("w") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -86,13 +68,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 class Store:
-    """The tables of a sweep.
-
-    Parameters
-    ----------
-    path
-        The database file; None for one in memory.
-    """
+    """The tables of a sweep, in a database file or in memory."""
 
     def __init__(self, path: Path | None = None) -> None:
         self._path = path
@@ -139,23 +115,23 @@ class Store:
 
         The columns of probes are there from the start, even if every member fails.
         """
+        number, *others = RUN_COLUMNS
+        columns = [number, *(Column(path, "parameter") for path in paths), *others]
+        of_probes = list(probes)
+        # Varied probes may need more columns: members that have them fail (TOO_WIDE).
+        if len(columns) + len(of_probes) <= MOST_COLUMNS:
+            columns += of_probes
         with self._transaction():
-            self._base.execute("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL)")
+            for table in (
+                "sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL)",
+                "requests (first INTEGER NOT NULL, count INTEGER NOT NULL, design TEXT NOT NULL)",
+                "columns (name TEXT, kind TEXT, unit TEXT)",
+                f"runs ({', '.join(map(_definition, columns))})",
+            ):
+                self._base.execute(f"CREATE TABLE {table}")
             self._base.executemany(
                 "INSERT INTO sweep VALUES (?, ?)", {"format": _FORMAT, **description}.items()
             )
-            self._base.execute(
-                "CREATE TABLE requests (first INTEGER NOT NULL, count INTEGER NOT NULL, "
-                "design TEXT NOT NULL)"
-            )
-            self._base.execute("CREATE TABLE columns (name TEXT, kind TEXT, unit TEXT)")
-            number, *others = RUN_COLUMNS
-            columns = [number, *(Column(path, "parameter") for path in paths), *others]
-            of_probes = list(probes)
-            # Varied probes may need more columns: members that have them fail (TOO_WIDE).
-            if len(columns) + len(of_probes) <= MOST_COLUMNS:
-                columns += of_probes
-            self._base.execute(f"CREATE TABLE runs ({', '.join(map(_definition, columns))})")
             for column in columns:
                 self._note_column(column)
 
@@ -179,27 +155,26 @@ class Store:
         rows = self._ask("SELECT design FROM requests ORDER BY rowid")
         return [json.loads(design) for (design,) in rows]
 
-    def finished(self, paths: Iterable[str]) -> set[tuple[Any, ...]]:
-        """Return the values of the parameters of all members that are not to be run again."""
-        names = ", ".join(map(_quoted, paths))
-        question = f"SELECT {names} FROM runs WHERE status NOT IN ({_PLACES})"
-        return set(self._ask(question, *OF_SURROUNDINGS))
+    def known(
+        self, paths: Iterable[str]
+    ) -> tuple[set[tuple[Any, ...]], dict[tuple[Any, ...], int]]:
+        """Return the values of the parameters of all members that are not to be run again.
 
-    def failed_for_surroundings(self, paths: Iterable[str]) -> dict[tuple[Any, ...], int]:
-        """Return the numbers of the members that are to be run again, by their values."""
-        names = ", ".join(map(_quoted, paths))
-        question = f"SELECT member, {names} FROM runs WHERE status IN ({_PLACES})"
-        return {row[1:]: row[0] for row in self._ask(question, *OF_SURROUNDINGS)}
+        Behind them the numbers of those that are, by their values.
+        """
+        names = ", ".join(map(_quoted, ["member", "status", *paths]))
+        done, again = set(), {}
+        for number, status, *values in self._ask(f"SELECT {names} FROM runs"):
+            if status in OF_SURROUNDINGS:
+                again[tuple(values)] = number
+            else:
+                done.add(tuple(values))
+        return done, again
 
     def write(self, table: Table, paths: Iterable[str], values: Mapping[int, Member]) -> None:
         """Add finished members, all of them or none; one that was run again has its new row.
 
-        Parameters
-        ----------
-        table
-            Their rows.
-        paths, values
-            The parameters, and by number those of each member.
+        `values` are those of the parameters of each member, by its number.
         """
         table = self._that_fits(table)
         run, found = [column.name for column in RUN_COLUMNS], list(table.columns)
@@ -235,7 +210,7 @@ class Store:
                     f"it finds {len(wider) - len(known)} columns more, and a table has "
                     f"{MOST_COLUMNS} at most: ask for fewer probes, modes or bifurcations"
                 )
-                row = failed_row(row["member"], TOO_WIDE, message, row["seconds"])
+                row = row_of(row["member"], TOO_WIDE, message, row["seconds"])
             rows.append(row)
         columns = {name: column for name, column in table.columns.items() if name in known}
         return Table(columns, rows)
@@ -249,25 +224,17 @@ class Store:
         names = ", ".join(_quoted(column.name) for column in columns)
         return self._ask(f"SELECT {names} FROM runs WHERE rowid <= ? ORDER BY member", last)
 
-    def statuses(self, last: int) -> dict[str, int]:
-        """Return how many of the first `last` members have each status, most frequent first."""
-        return dict(
-            self._ask(
-                "SELECT status, COUNT(*) AS n FROM runs WHERE rowid <= ? "
-                "GROUP BY status ORDER BY n DESC, status",
-                last,
-            )
+    def counts(self, last: int) -> list[tuple[str, int, float, int]]:
+        """Return by status, most frequent first, how many of the first `last` members have it.
+
+        Behind that their CPU time [s], and how many of them have warnings.
+        """
+        warned = f"COUNT({WARNINGS})" if WARNINGS in self._columns else "0"
+        return self._ask(
+            f"SELECT status, COUNT(*) AS n, TOTAL(seconds), {warned} FROM runs WHERE rowid <= ? "
+            "GROUP BY status ORDER BY n DESC, status",
+            last,
         )
-
-    def seconds(self, last: int) -> float:
-        """Return the CPU time of the first `last` members [s]."""
-        return float(self._ask("SELECT TOTAL(seconds) FROM runs WHERE rowid <= ?", last)[0][0])
-
-    def warned(self, last: int) -> int:
-        """Return how many of the first `last` members have warnings."""
-        if WARNINGS not in self._columns:
-            return 0
-        return int(self._ask(f"SELECT COUNT({WARNINGS}) FROM runs WHERE rowid <= ?", last)[0][0])
 
     def _ask(self, question: str, *values: Any) -> list[Any]:
         with self._named_errors():
@@ -314,7 +281,7 @@ class Store:
 
 
 def _definition(column: Column) -> str:
-    type_ = _RUN_TYPES[column.name] if column.kind == "run" else _TYPES[column.kind]
+    type_ = RUN_TYPES[column] if column.kind == "run" else _TYPES[column.kind]
     return f"{_quoted(column.name)} {type_}"
 
 

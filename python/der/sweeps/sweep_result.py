@@ -157,27 +157,20 @@ def load_sweep(folder: str | os.PathLike[str]) -> Sweep:
 def read_sweep(
     store: Store, rows: Callable[[tuple[Column, ...], int], Rows] | None = None
 ) -> Sweep:
-    """Return what a store holds.
-
-    Parameters
-    ----------
-    store
-        The tables of a sweep.
-    rows
-        Reads them when they are asked for; without it, they are read now.
-    """
+    """Return what a store holds; without a function that reads rows later, they are read now."""
     description = store.description()
     if not description:
         raise ValueError("the sweep never began: it holds nothing to read")
     columns, last = tuple(store.columns), store.last()
     read = store.read(columns, last) if rows is None else []
+    counts = store.counts(last)
     return Sweep(
         scenario=Scenario.parse(description["scene"], description["source"]),
         columns=columns,
         requests=tuple(store.requests()),
-        statuses=store.statuses(last),
-        cpu_seconds=store.seconds(last),
-        warned=store.warned(last),
+        statuses={status: count for status, count, _, _ in counts},
+        cpu_seconds=sum((seconds for _, _, seconds, _ in counts), 0.0),
+        warned=sum(warned for _, _, _, warned in counts),
         _read=(lambda: read) if rows is None else partial(rows, columns, last),
     )
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from contextlib import closing, contextmanager
 from dataclasses import replace
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +25,9 @@ from der.sweeps.chunk import Chunk
 from der.sweeps.design import Design, Member, make_design
 from der.sweeps.design_checks import check_design
 from der.sweeps.executors import AnyExecutor, Place, lost_its_worker, place_for
-from der.sweeps.probe_columns import probe_columns
-from der.sweeps.scene_difference import first_difference
 from der.sweeps.store import FILE, FRAMES, LOCK, Store, is_sweep, locked
 from der.sweeps.sweep_result import Sweep, load_sweep, read_sweep
-from der.sweeps.table import LOST, Table, failed_row
+from der.sweeps.table import LOST, Table, columns_of_probe, row_of, units_of_probes
 from der.sweeps.values import stored
 
 #: What a chunk is to take [s]: a transaction and a journey are little against it.
@@ -114,8 +112,7 @@ def sweep(
     >>> tips = der.sweep("cantilever.yaml", {"loads.0.point_force.force.1": "-5:0:51"})
     >>> tips["tip_y"]
     """
-    if out is not None:
-        out = folder_path("out", out)
+    folder = None if out is None else folder_path("out", out)
     if not (progress is None or callable(progress)):
         raise TypeError(f"progress must be a function, got {progress!r}")
     for name, value in {
@@ -132,7 +129,7 @@ def sweep(
     design = make_design(vary, zipped=zipped, sample=sample, seed=seed)
     check_design(scene, design, verify)
     checked_jobs(jobs)
-    if frames and out is None:
+    if frames and folder is None:
         raise ValueError("run folders need a folder to be in: give out as well")
     description = {
         "title": scene.title,
@@ -143,32 +140,41 @@ def sweep(
         "frames": "yes" if frames else "no",
         "version": __version__,
     }
-    with _store(out, resume) as store:
-        _begin(store, scene, description, design, out)
+    runs = str(folder.resolve() / FRAMES) if frames and folder is not None else ""
+    blank = Chunk(description["scene"], scene.source, design.paths, (), bool(verify), runs)
+    with _store(folder, resume) as store:
+        _begin(store, scene, description, design, folder)
         with place_for(executor, jobs) as place:
             try:
-                _Sweeper(store, scene, design, description, out, place, progress).run()
+                _Sweeper(store, design, blank, place, progress).run()
             except BrokenExecutor as error:
                 raise DerError(
                     f"a process of the executor died ({error}); what was finished is kept: go on "
                     "with --resume (resume=True)"
                 ) from error
-        if out is None:
+        if folder is None:
             return read_sweep(store)
-    return load_sweep(out)
+    return load_sweep(folder)
 
 
 @contextmanager
-def _store(out: str | os.PathLike[str] | None, resume: bool) -> Iterator[Store]:
+def _store(folder: Path | None, resume: bool) -> Iterator[Store]:
     """Open the tables of a sweep for the time of a ``with`` block."""
-    if out is None:
+    if folder is None:
         if resume:
             raise ValueError("a sweep in memory cannot be resumed: give out as well")
         with closing(Store()) as store:
             yield store
         return
-    folder = Path(out)
-    _check_folder(folder, resume)
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder} is a file, and a sweep goes to a folder: name another one")
+    if not is_sweep(folder) and folder.exists():
+        strangers = sorted(path.name for path in folder.iterdir() if path.name != LOCK)
+        if strangers:
+            needs = "a sweep needs an empty folder, and"
+            what = "there is no sweep to resume in" if resume else needs
+            holds = "which holds" if resume else "holds"
+            raise ValueError(f"{what} {folder} {holds} {strangers[0]}: name another folder")
     make_folder(folder)
     with locked(folder), closing(Store(folder / FILE)) as store:
         if not resume and store.description():
@@ -179,37 +185,31 @@ def _store(out: str | os.PathLike[str] | None, resume: bool) -> Iterator[Store]:
         yield store
 
 
-def _check_folder(folder: Path, resume: bool) -> None:
-    if folder.exists() and not folder.is_dir():
-        raise ValueError(f"{folder} is a file, and a sweep goes to a folder: name another one")
-    if is_sweep(folder) or not folder.exists():
-        return
-    strangers = sorted(path.name for path in folder.iterdir() if path.name != LOCK)
-    if strangers:
-        what = "there is no sweep to resume in" if resume else "a sweep needs an empty folder, and"
-        holds = "which holds" if resume else "holds"
-        raise ValueError(f"{what} {folder} {holds} {strangers[0]}: name another folder")
-
-
 def _begin(
     store: Store,
     scene: Scenario,
     description: dict[str, str],
     design: Design,
-    out: str | os.PathLike[str] | None,
+    out: Path | None,
 ) -> None:
     """Make the tables, or see that they are those of this sweep."""
     kept = store.description()
     if not kept:
         # Probes may be varied; the first member is known to be valid.
         first = scene.with_(**dict(zip(design.paths, next(iter(design)), strict=True)))
-        store.create(description, design.paths, probe_columns(first))
+        on_path = first.factor_range is not None
+        probes = (columns_of_probe(*probe, on_path) for probe in units_of_probes(first).items())
+        store.create(description, design.paths, chain.from_iterable(probes))
         return
     if kept["scene"] != description["scene"]:
+        before, now = (
+            Scenario.parse(text).to_dict() for text in (kept["scene"], description["scene"])
+        )
+        difference = _first_difference(before, now)
         raise ValueError(
             f"{out} holds a sweep of the scene '{kept['title']}' ({kept['source']}), not of "
             f"'{description['title']}' ({description['source']}): they differ in "
-            f"{first_difference(kept['scene'], description['scene'])}; name another folder"
+            f"{difference or 'the text'}; name another folder"
         )
     paths = [column.name for column in store.columns if column.kind == "parameter"]
     if sorted(paths) != sorted(design.paths):
@@ -231,6 +231,19 @@ def _begin(
                 f"{description['version']}: the column 'version' tells which members are whose"
             ]
         )
+
+
+def _first_difference(one: Any, other: Any, path: str = "") -> str | None:
+    """Return the key path of the first difference of two scenes; None if there is none."""
+    pairs: list[tuple[str, Any, Any]]
+    if isinstance(one, dict) and isinstance(other, dict):
+        pairs = [(key, one.get(key), other.get(key)) for key in (*one, *other)]
+    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        pairs = [(str(i), *both) for i, both in enumerate(zip(one, other, strict=True))]
+    else:
+        return path if one != other else None
+    found = (_first_difference(a, b, f"{path}.{key}".lstrip(".")) for key, a, b in pairs)
+    return next((path for path in found if path is not None), None)
 
 
 def _unfinished(
@@ -257,27 +270,16 @@ class _Sweeper:
     def __init__(
         self,
         store: Store,
-        scene: Scenario,
         design: Design,
-        description: dict[str, str],
-        out: str | os.PathLike[str] | None,
+        blank: Chunk,
         place: Place,
         progress: ProgressFunction | None,
     ) -> None:
         self._store = store
         self._place = place
         self._progress = progress
-        self._design = design
-        frames = description["frames"] == "yes" and out is not None
-        self._blank = Chunk(
-            scene=description["scene"],
-            source=scene.source,
-            paths=design.paths,
-            members=(),
-            verify=description["verify"] == "yes",
-            frames=str(Path(out).resolve() / FRAMES) if frames and out is not None else "",
-        )
-        done, again = store.finished(design.paths), store.failed_for_surroundings(design.paths)
+        self._blank = blank
+        done, again = store.known(design.paths)
         first = store.request(design)
         self._left = _unfinished(enumerate(design, first), done, again)
         # Among `done` there may be rows of other requests.
@@ -333,7 +335,7 @@ class _Sweeper:
             raise error
         if len(chunk.members) == 1:
             number, _ = chunk.members[0]
-            return Table(rows=[failed_row(number, LOST, f"every worker that ran it died: {error}")])
+            return Table(rows=[row_of(number, LOST, f"every worker that ran it died: {error}")])
         half = len(chunk.members) // 2
         self._again += [self._with(chunk.members[:half]), self._with(chunk.members[half:])]
         return None

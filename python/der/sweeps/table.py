@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any, Literal
 
-from der._core import __version__
+from der._core import Scenario, __version__, quantities
 
 Kind = Literal["run", "parameter", "probe", "found", "error"]
 
@@ -30,18 +31,21 @@ class Column:
     unit: str = ""
 
 
-#: The columns that every sweep has, beside its parameters.
-RUN_COLUMNS = (
-    Column("member", "run"),
-    Column("status", "run"),
-    Column("message", "run"),
-    Column("seconds", "run", "s"),
-    Column("steps", "run"),
-    Column("newton_iterations", "run"),
-    Column("unreliable_from", "run", "s"),
-    Column("version", "run"),
-)
-
+#: The columns that every sweep has, beside its parameters, with their types in SQLite.
+RUN_TYPES = {
+    # Not the primary key, so that the numbers of SQLite's own rows grow as members are added.
+    Column("member", "run"): "INTEGER NOT NULL UNIQUE",
+    Column("status", "run"): "TEXT NOT NULL",
+    Column("message", "run"): "TEXT",
+    Column("seconds", "run", "s"): "REAL",
+    Column("steps", "run"): "INTEGER",
+    Column("newton_iterations", "run"): "INTEGER",
+    Column("unreliable_from", "run", "s"): "REAL",
+    Column("version", "run"): "TEXT NOT NULL",
+}
+RUN_COLUMNS = tuple(RUN_TYPES)
+#: What is told of each probe.
+TOLD, WHEN = ("final", "min", "max"), ("t_min", "t_max")
 
 #: Status of a member whose run met an error that is none of der's, such as a lack of memory.
 BROKEN = "error"
@@ -55,8 +59,37 @@ OF_SURROUNDINGS = ("io_error", BROKEN, LOST)
 WARNINGS = "warnings"
 
 
-def failed_row(number: int, status: str, message: str, seconds: float = 0.0) -> dict[str, object]:
-    """Return the row of a member that has no result."""
+def probes_of(scene: Scenario) -> dict[str, dict[str, Any]]:
+    """Return the probes that a scene asks for, by name."""
+    return (scene.to_dict().get("output") or {}).get("probes") or {}
+
+
+def units_of_probes(scene: Scenario) -> dict[str, str]:
+    """Return the unit of each probe of a scene."""
+    unit_of = {quantity.name: quantity.unit for quantity in quantities()}
+    return {name: unit_of[probe["quantity"]] for name, probe in probes_of(scene).items()}
+
+
+def columns_of_probe(name: str, unit: str, on_path: bool) -> list[Column]:
+    """Return the columns of a probe.
+
+    On a path of equilibria an extreme has the number of a point, and no time.
+    """
+    units = (unit,) * len(TOLD) + ("" if on_path else "s",) * len(WHEN)
+    names = names_of_columns(name)
+    return [Column(own, "probe", its) for own, its in zip(names, units, strict=True)]
+
+
+@lru_cache(maxsize=1024)
+def names_of_columns(probe: str) -> tuple[str, ...]:
+    """Return the names of the columns of a probe, made once and not for each member."""
+    return tuple(f"{probe}.{what}" for what in (*TOLD, *WHEN))
+
+
+def row_of(
+    number: int, status: str, message: str | None = None, seconds: float = 0.0
+) -> dict[str, Any]:
+    """Return the row of a member; of one that has no result it is all that is known."""
     return {
         "member": number,
         "status": status,
@@ -80,15 +113,6 @@ class Table:
 
     columns: dict[str, Column] = field(default_factory=dict)
     rows: list[dict[str, Any]] = field(default_factory=list)
-
-    def begin(self, **values: Any) -> dict[str, Any]:
-        """Begin a row with the values of `RUN_COLUMNS` that are known, and return it."""
-        self.rows.append(values)
-        return values
-
-    def add(self, column: Column) -> None:
-        """Add a column, unless it is there."""
-        self.columns.setdefault(column.name, column)
 
     def put(self, name: str, kind: Kind, unit: str, value: Any) -> None:
         """Put a value into the last row."""

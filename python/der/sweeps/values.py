@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from der._core import number_with_unit
-from der.spelled_numbers import NUMBER, read_number
-from der.value_lists import check_value_list
+from der.arguments import NUMBER, check_value_list, read_number
 
 #: Values of a range and points of a sample, at most: all of them are held in memory.
 MOST_VALUES = 10_000_000
@@ -100,18 +99,10 @@ Values = tuple[Any, ...] | Range
 def parse_values(text: str) -> Values:
     """Read the values of a parameter as the command line spells them.
 
-    Parameters
-    ----------
-    text
-        ``1,2,5``: these values. ``0:1:11``: 11 values from 0 to 1, both ends included; with
-        ``:log`` at the end, in equal ratios. ``0:1``, or ``1e6:1e9:log``: a range to sample from.
-        A value may be a number, one with a unit (``5 mm``, ``1 mm:5 mm:5``), a word, a text in
-        double quotes, true, false, null, or a list in brackets.
-
-    Raises
-    ------
-    ValueError
-        If it is none of these; the message says what to write.
+    ``1,2,5``: these values. ``0:1:11``: 11 values from 0 to 1, both ends included; with ``:log`` at
+    the end, in equal ratios. ``0:1``, or ``1e6:1e9:log``: a range to sample from. A value may be a
+    number, one with a unit (``5 mm``, ``1 mm:5 mm:5``), a word, a text in double quotes, true,
+    false, null, or a list in brackets.
     """
     if ":" in text and not any(mark in text for mark in '["{,'):
         return _parse_range(text)
@@ -124,12 +115,6 @@ def as_values(given: str | Iterable[Any]) -> Values:
     """Return the values of a parameter that a program gives: any sequence, or a text.
 
     NumPy numbers and arrays become numbers and lists of Python.
-
-    Raises
-    ------
-    ValueError
-        If there is no value, or a text is not spelled as `parse_values` reads it; for sets, which
-        have no order, dicts and bytes; for masked values.
     """
     if isinstance(given, Range):
         return given

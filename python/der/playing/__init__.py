@@ -1,0 +1,92 @@
+"""A running simulation in the browser: what can be set has a slider, and the mouse pulls rods."""
+
+from __future__ import annotations
+
+import io
+import time
+import webbrowser
+from contextlib import redirect_stdout
+from queue import Empty, SimpleQueue
+from typing import Any
+
+from der.scenario import SceneLike
+
+_FRAME = 1.0 / 30.0  # [s]
+_COMPUTING = 0.8  # most of a frame; the rest is for the page
+_TEXT_EVERY = 6  # frames
+#: How long the page may be gone [s]: while it loads again it is.
+_GONE = 3.0
+
+
+def play(scene: SceneLike, *, port: int = 8080, open: bool = False) -> None:
+    """Play a scene in the browser, until its page is closed.
+
+    It prints the address. The page has sliders for what can be set, buttons and a speed; the mouse
+    pulls rods. It is for browsers of this machine.
+
+    Parameters
+    ----------
+    scene
+        As `Simulation` takes it, with a ``time``. It goes on after its duration.
+    port
+        Of the address; if it is taken, the next one that is free.
+    open
+        Whether to show the page in a browser.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Without the package viser.
+    ValueError
+        If the scene has no time.
+    SceneError, DerError
+        Where the scene cannot be simulated.
+    """
+    try:
+        import viser
+    except ModuleNotFoundError:
+        raise ModuleNotFoundError(
+            "der play requires the package viser: pip install 'der[live]'"
+        ) from None
+    from der.playing.player import Player  # here: takes long to load
+
+    player = Player(scene)
+    with redirect_stdout(io.StringIO()):  # it prints a table
+        server = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
+    try:
+        address = f"http://localhost:{server.get_port()}"
+        print(f"{address} (ends when the page is closed, and with Ctrl-C)", flush=True)
+        if open:
+            webbrowser.open(address)
+        _serve(server, player)
+    finally:
+        server.stop()
+
+
+def _serve(server: Any, player: Any) -> None:
+    """Show frames until the last visitor has gone."""
+    from der.playing.panel import Panel
+    from der.playing.stage import Stage
+
+    requests: SimpleQueue[Any] = SimpleQueue()  # the page asks in threads of its own
+    stage = Stage(server, player, requests.put)
+    note = f"Drag a rod to pull it. The grid has cells of {stage.cell:g} m."
+    if stage.magnified > 1.05:
+        note += f" Rods are shown up to {stage.magnified:.2g} times as thick as they are."
+    panel = Panel(server, player, requests.put, note)
+    seen, before, frame = None, time.monotonic(), 0
+    while seen is None or before - seen < _GONE:
+        try:
+            while True:
+                requests.get_nowait()()
+        except Empty:
+            pass
+        now = time.monotonic()
+        if server.get_clients():
+            seen = now
+            player.advance(min(now - before, 3.0 * _FRAME), _COMPUTING * _FRAME)
+            stage.show()
+            if frame % _TEXT_EVERY == 0:
+                panel.show()
+        before, frame = now, frame + 1
+        time.sleep(max(0.002, now + _FRAME - time.monotonic()))

@@ -21,8 +21,7 @@ _GONE = 3.0
 def play(scene: SceneLike, *, port: int = 8080, open: bool = False) -> None:
     """Play a scene in the browser, until its page is closed.
 
-    It prints the address. The page has sliders for what can be set, buttons and a speed; the mouse
-    pulls rods. It is for browsers of this machine.
+    It prints the address, which is for browsers of this machine.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The rods of a player in the scene of a page, and the mouse that pulls them.
+"""The rods of a player as a page shows them, and the mouse that pulls them.
 
 On the stage lengths count against the size of the structure, from its middle.
 """
@@ -18,69 +18,48 @@ from der.plotting.style import LOAD
 from der.scene_loads import value_at
 
 Array: TypeAlias = NDArray[np.float64]
-#: What is to be done to a player between two frames.
-Request: TypeAlias = Callable[[], object]
+#: Takes what a visitor asks for; it is done between two frames.
+Put: TypeAlias = Callable[[Callable[[], object]], None]
 
 _SUPPORT, _HANDLE = 0.05, 0.015
-_DISTANCE = 2.2  # of the camera
-_FIELD = np.radians(40.0)  # that it sees, in height
+_DISTANCE, _FIELD = 2.2, np.radians(40.0)  # of the camera, and what it sees in height
 _BELOW, _BEHIND = 0.3, 0.1  # where the grid is, in space and in the plane
 _GREY = "#9aa3ad"
 
 
 class Stage:
-    """What a page shows of a player.
+    """What a page shows of a player beside its panel."""
 
-    Parameters
-    ----------
-    server
-        The server of viser.
-    player
-        The player.
-    put
-        Takes what the mouse asks for.
-    """
-
-    def __init__(self, server: Any, player: Player, put: Callable[[Request], None]) -> None:
+    def __init__(self, server: Any, player: Player, put: Put) -> None:
         self._player, self._put = player, put
-        simulation = player.simulation
-        rods = simulation.model.rods
+        scene, simulation, rods = server.scene, player.simulation, player.simulation.model.rods
         points = _in_space(simulation.positions)
         reach = max(float(rod.sphere_radii.max(initial=rod.radius)) for rod in rods)
         low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
-        self.size = float(np.max(high - low))
-        self._middle = 0.5 * (low + high)
+        self._size, self._middle = float(np.max(high - low)), 0.5 * (low + high)
         #: Length of a cell of the grid [m].
-        self.cell = float(f"{10.0 ** np.floor(np.log10(0.6 * self.size)):.0e}")
-        scene = server.scene
+        self.cell = float(f"{10.0 ** np.floor(np.log10(0.6 * self._size)):.0e}")
         sections = [rod["cross_section"] for rod in simulation.scenario.to_dict()["rods"]]
         self._tubes = [
-            Tube(scene, rod, section, self.size, simulation.model.name)
+            Tube(scene, rod, section, self._size, simulation.model.name)
             for rod, section in zip(rods, sections, strict=True)
         ]
-        for tube in self._tubes:
-            for mesh in tube.meshes:
-                mesh.on_drag("left")(self._on_drag)
+        #: How many times as thick as it is a rod is shown, at most.
+        self.magnified = max(tube.magnified for tube in self._tubes)
+        for mesh in (mesh for tube in self._tubes for mesh in tube.meshes):
+            mesh.on_drag("left")(self._on_drag)
         self._held = {
             held.node: scene.add_box(f"/held/{held.node}", rgb(_GREY), (_SUPPORT,) * 3)
             for held in held_nodes(simulation.scenario)
         }
-        self._hand = scene.add_icosphere("/hand", _HANDLE, rgb(LOAD), visible=False)
+        self._hand = scene.add_icosphere("/hand", _HANDLE, rgb(LOAD))
         self._pull = scene.add_line_segments("/pull", np.zeros((1, 2, 3)), rgb(LOAD), thickness=3.0)
         self._look(server, self._on_stage(low))
-        self.show()
-
-    @property
-    def magnified(self) -> float:
-        """How many times as thick as it is a rod is shown, at most."""
-        return max(tube.magnified for tube in self._tubes)
 
     def show(self) -> None:
         """Show the present state."""
-        simulation = self._player.simulation
-        points = self._on_stage(_in_space(simulation.positions))
-        directors = simulation.directors
-        first = 0  # edge of the rod
+        points = self._on_stage(_in_space(self._player.simulation.positions))
+        directors, first = self._player.simulation.directors, 0
         for tube in self._tubes:
             line = points[tube.rod.line_nodes]
             tube.show(line, directors[first : first + len(line) - 1])
@@ -94,45 +73,33 @@ class Stage:
             self._pull.points = np.array([[points[pulled[0]], target]])
 
     async def _on_drag(self, event: Any) -> None:  # async: what comes later is done later
-        player = self._player
-        grabbed, to = map(self._in_metres, (event.start_position, event.end_position))
+        player, dimension = self._player, self._player.simulation.model.dimension
+        ends = np.array([event.start_position, event.end_position]) * self._size + self._middle
+        grabbed, to = ends[:, :dimension]
         if event.phase == "start":
             self._put(lambda: player.grab(grabbed))
         self._put(player.release if event.phase == "end" else lambda: player.drag(to))
 
+    def _on_stage(self, points: Array) -> Array:
+        return np.asarray((points - self._middle) / self._size)
+
     def _look(self, server: Any, low: Array) -> None:
-        """Place the camera, and a grid behind or below what is seen."""
+        """Place the camera, and a grid: in the plane behind the rods, in space below them."""
         if self._player.simulation.model.dimension == 2:
             up, towards, plane = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), "xy"
             place = -_BEHIND * towards
         else:
             up = _upwards(self._player.simulation.scenario.to_dict())
-            axis = int(np.argmax(np.abs(up)))
-            towards = up + 2.5 * np.roll(np.abs(up), 2) + np.roll(np.abs(up), 1)
-            plane = ("yz", "xz", "xy")[axis]
-            lowest = low[axis] if up[axis] > 0.0 else -low[axis]
-            place = (lowest - _BELOW * up[axis]) * np.abs(up)
+            axis, upright = int(np.argmax(np.abs(up))), np.abs(up)
+            towards = up + 2.5 * np.roll(upright, 2) + np.roll(upright, 1)
+            plane, place = ("yz", "xz", "xy")[axis], low * upright - _BELOW * up
         server.scene.set_up_direction(up)
         camera = server.initial_camera
-        camera.up, camera.fov = up, _FIELD
-        camera.look_at = np.zeros(3)
+        camera.up, camera.fov, camera.look_at = up, _FIELD, np.zeros(3)
         camera.position = _DISTANCE * towards / np.linalg.norm(towards)
-        server.scene.add_grid(
-            "/grid",
-            plane=plane,
-            cell_size=self.cell / self.size,
-            section_size=5.0 * self.cell / self.size,
-            infinite_grid=True,
-            fade_distance=4.0 * _DISTANCE,
-            position=place,
-        )
-
-    def _on_stage(self, points: Array) -> Array:
-        return np.asarray((points - self._middle) / self.size)
-
-    def _in_metres(self, point: tuple[float, float, float]) -> Array:
-        dimension = self._player.simulation.model.dimension
-        return np.asarray(np.array(point) * self.size + self._middle)[:dimension]
+        cell = self.cell / self._size
+        lines = {"cell_size": cell, "section_size": 5.0 * cell, "fade_distance": 4.0 * _DISTANCE}
+        server.scene.add_grid("/grid", plane=plane, infinite_grid=True, position=place, **lines)
 
 
 def _in_space(points: Array) -> Array:

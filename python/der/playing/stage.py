@@ -94,7 +94,7 @@ class Stage:
             towards = up + 2.5 * np.roll(upright, 2) + np.roll(upright, 1)
             plane, place = ("yz", "xz", "xy")[axis], low * upright - _BELOW * up
         server.scene.set_up_direction(up)
-        # The light of surroundings would take seconds to load, and shadows a processor for graphics.
+        # Light from surroundings takes seconds to load, and shadows are for graphics processors.
         server.scene.configure_environment_map(None)
         server.scene.configure_default_lights(cast_shadow=False)
         server.scene.add_light_ambient("/light", intensity=1.5)

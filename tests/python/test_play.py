@@ -167,6 +167,12 @@ def test_a_static_scene_has_no_motion():
         Player("example:cantilever")
 
 
+@pytest.mark.usefixtures("viser")
+def test_a_port_that_is_none(swing):
+    with pytest.raises(ValueError, match="port must be a whole number of at least 1 and at most"):
+        der.play(swing, port=70000)
+
+
 def test_without_viser(swing, monkeypatch):
     monkeypatch.setitem(sys.modules, "viser", None)
     with pytest.raises(ModuleNotFoundError, match=re.escape("pip install 'der[live]'")):

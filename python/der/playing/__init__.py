@@ -6,14 +6,17 @@ import io
 import time
 import webbrowser
 from contextlib import redirect_stdout
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 from typing import Any
 
+from der.errors import DerError
 from der.scenario import SceneLike
+from der.whole_numbers import whole_number
 
 _FRAME = 1.0 / 30.0  # [s]
 _COMPUTING = 0.8  # most of a frame; the rest is for the page
 _TEXT_EVERY = 6  # frames
+_NAP = 1.0  # most that goes by in a frame [s]: a machine that sleeps misses the rest
 #: How long the page may be gone [s]: while it loads again it is.
 _GONE = 3.0
 
@@ -37,7 +40,7 @@ def play(scene: SceneLike, *, port: int = 8080, open: bool = False) -> None:
     ModuleNotFoundError
         Without the package viser.
     ValueError
-        If the scene has no time.
+        If the scene has no time, or the port is none.
     SceneError, DerError
         Where the scene cannot be simulated.
     """
@@ -49,6 +52,7 @@ def play(scene: SceneLike, *, port: int = 8080, open: bool = False) -> None:
         ) from None
     from der.playing.player import Player  # here: takes long to load
 
+    port = whole_number("port", port, 1, 65535)
     player = Player(scene)
     with redirect_stdout(io.StringIO()):  # it prints a table
         server = viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
@@ -75,15 +79,17 @@ def _serve(server: Any, player: Any) -> None:
     panel = Panel(server, player, requests.put, note)
     seen, before, frame = None, time.monotonic(), 0
     while seen is None or before - seen < _GONE:
-        try:
-            while True:
-                requests.get_nowait()()
-        except Empty:
-            pass
+        visitors = server.get_clients()
+        while not requests.empty():
+            try:
+                requests.get()()
+            except DerError as error:  # a clamp that would turn too far in a step, for example
+                for visitor in visitors.values():
+                    visitor.add_notification("This cannot be set", str(error))
         now = time.monotonic()
-        if server.get_clients():
+        if visitors:
             seen = now
-            player.advance(min(now - before, 3.0 * _FRAME), _COMPUTING * _FRAME)
+            player.advance(min(now - before, _NAP), _COMPUTING * _FRAME)
             stage.show()
             if frame % _TEXT_EVERY == 0:
                 panel.show()

@@ -83,7 +83,7 @@ def _serve(server: Any, player: Any) -> None:
         while not requests.empty():
             try:
                 requests.get()()
-            except DerError as error:  # a clamp that would turn too far in a step, for example
+            except DerError as error:  # such as a curvature too sharp for the mesh
                 for visitor in visitors.values():
                     visitor.add_notification("This cannot be set", str(error))
         now = time.monotonic()

@@ -147,7 +147,7 @@ def test_a_pulled_rod_goes_where_the_hand_is(still):
     play_for(player, 4.0)
     assert 0.1 < player.simulation.positions[-1, 1] < 0.3
     player.release()
-    play_for(player, 4.0)
+    play_for(player, 8.0)
     assert abs(player.simulation.positions[-1, 1]) < 0.01
 
 

@@ -63,7 +63,8 @@ def play(scene: SceneLike, *, port: int = 8080, open: bool = False) -> None:
             webbrowser.open(address)
         _serve(server, player)
     finally:
-        server.stop()
+        with redirect_stdout(io.StringIO()):  # it says so
+            server.stop()
 
 
 def _serve(server: Any, player: Any) -> None:

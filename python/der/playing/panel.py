@@ -61,7 +61,10 @@ class Panel:
         self._pause.label = "Play" if player.paused else "Pause"
         for control in self._untouched:
             reach = control.reach
-            self._sliders[control].value = min(max(player.value(control), -reach), reach)
+            value = min(max(player.value(control), -reach), reach)
+            # What is set anew takes what a visitor is about to type.
+            if self._sliders[control].value != value:
+                self._sliders[control].value = value
         rows = [(name, value, self._units[name]) for name, value in simulation.probes.items()]
         energies = simulation.energies
         rows += [

@@ -173,6 +173,26 @@ def gerber(n: int) -> Scene:
     )
 
 
+def sprung(n: int) -> Scene:
+    """Hinges with springs, and a motor between a beam and the arm that stands on it."""
+    scene = scene_of(
+        [
+            rod("beam", [0, 0], [1, 0], 10 * n),
+            rod("tail", [1, 0], [1.5, 0.2], 5 * n, stiffness={"EI": 0.4}),
+            rod("arm", [0.4, 0], [0.4, 0.6], 6 * n, stiffness={"EI": 0.7}),
+        ],
+        [
+            hinge("hip", at("beam", 0.4), at("arm", "start")),
+            hinge("knee", at("beam", "end"), at("tail", "start")),
+        ],
+        [clamp("beam", "start"), pin("arm", "end")],
+        [force("tail", "end", 0.5, -1), {"moment": {"joint": "hip", "moment": 0.8}}],
+    )
+    scene["joints"][0]["spring"] = {"rotational_stiffness": 1.5}
+    scene["joints"][1]["spring"] = {"rotational_stiffness": 3}
+    return scene
+
+
 def curved(n: int) -> Scene:
     """Natural curvatures that differ from rod to rod."""
     return scene_of(
@@ -284,6 +304,7 @@ SCENES: list[Callable[[int], Scene]] = [
     portal,
     braced,
     gerber,
+    sprung,
     curved,
     stretched,
     near,
@@ -750,3 +771,32 @@ def test_a_sudden_couple_is_balanced_at_every_step(integrator: str) -> None:
     times = np.asarray(result.times)
     assert np.abs(jump[times < 0.0199]).max() < 1e-9
     assert jump[times > 0.0203] == pytest.approx(1.0, abs=1e-8)
+
+
+def test_the_slope_goes_on_where_a_drawn_rod_turns_through_pi() -> None:
+    """An arc of radius 1 from the direction 2.5 on, almost without a load: the slope is 2.5 + s."""
+    angles = np.linspace(2.5, 4.5, 17)
+    points = np.column_stack([np.sin(angles), -np.cos(angles)]).tolist()
+    stub = rod("stub", points[8], [points[8][0], points[8][1] + 0.5], 4)
+    section = {"stiffness": {"EA": 1e5, "EI": 1.0, "mass_per_length": 1.0}}
+    scene = scene_of(
+        [{"name": "arc", "points": points, "cross_section": section}, stub],
+        [joint("middle", at("arc", {"node": 8}), at("stub", "start"))],
+        [clamp("arc", "start")],
+        [force("stub", "end", 1e-6, 0)],
+    )
+    result = der.run(der.Scenario.from_dict(scene | {"analysis": "static"}))
+    places, slopes = result.along("arc", "slope")
+    assert slopes[-1] == pytest.approx(2.5 + places * 2.0 / places[-1], abs=2e-3)
+
+
+def test_a_moment_at_a_clamp_is_in_no_reaction() -> None:
+    """It acts on what holds the clamp (docs/mechanics.md, Loads)."""
+
+    def reaction(*loads: Scene) -> float:
+        probes = {"moment": {"support": 0, "quantity": "reaction_moment"}}
+        scene = corner(1) | {"analysis": "static", "output": {"probes": probes}}
+        scene["loads"] = [*scene["loads"], *loads]
+        return float(der.run(der.Scenario.from_dict(scene)).probes["moment"][-1])
+
+    assert reaction(moment("post", "start", 2.0)) == reaction()

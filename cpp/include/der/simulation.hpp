@@ -22,6 +22,7 @@
 #include "der/model/state.hpp"
 #include "der/model/turning_limits.hpp"
 #include "der/scenario/reader.hpp"
+#include "der/solvers/joint_rotations.hpp"
 #include "der/solvers/linear_solver.hpp"
 #include "der/solvers/newton.hpp"
 #include "der/statics/continuation.hpp"
@@ -106,7 +107,8 @@ class Simulation {
   /// Takes the present state as the start of a motion: of a new ledger, with no steps before it.
   void start_anew();
   /// Where a program, or the start of a run, has put the nodes.
-  void settle_rotations();
+  /// Nodes alone do not tell rotations that lag behind.
+  void settle_rotations(JointRotations::Which which = JointRotations::Which::All);
   /// Enters the energy that the integrator has created by now into the state's audit; steps do so
   /// now and then.
   void audit_energy() { energy_monitor_.look(state_); }

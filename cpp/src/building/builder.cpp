@@ -26,6 +26,7 @@
 #include "der/scenario/model_choice.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/hinge.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "der/supports/supports.hpp"
 #include "model/corner_twist.hpp"
@@ -333,6 +334,7 @@ Model build_model(const scenario::Scene& scene, LegOrder order) {
   const bool with_sections = choose_model(scene, model);
   lay_out_rods(scene, place_nodes(scene, with_sections, model), model);
   find_joints(scene, model);
+  for (const auto& joint : scene.joints) add_hinge(joint, model);
   find_force_nodes(scene, model);
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     add_support(scene.supports[i], i, model);

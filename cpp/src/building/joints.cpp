@@ -8,6 +8,7 @@
 
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/kinematics/section_frame.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
@@ -24,6 +25,21 @@ struct RodPoints {
   std::vector<bool> turns;  ///< whether something holds or loads the rotation there
   std::vector<int> joint;   ///< number in the scene; -1: none
 };
+
+/// Whether the rods of a joint have rotations there of which something is asked.
+bool turns_rods(const scenario::Scene& scene, const scenario::Joint& joint) {
+  const auto has_moment = [&](const scenario::Load& load) {
+    const auto* moment = std::get_if<scenario::Moment>(&load.what);
+    return moment != nullptr && moment->joint == joint.name;
+  };
+  // A rotation of its own counts whole turns.
+  const auto reads_angle = [&](const scenario::Probe& probe) {
+    return probe.joint && *probe.joint == joint.name && probe.quantity == "angle";
+  };
+  const auto& probes = scene.output.probes;
+  return joint.has_sides() || std::any_of(scene.loads.begin(), scene.loads.end(), has_moment) ||
+         std::any_of(probes.begin(), probes.end(), reads_angle);
+}
 
 RodPoints points_of(const scenario::Scene& scene, const RodMesh& rod, const Model& model) {
   const std::size_t count = rod.nodes.size();
@@ -63,7 +79,9 @@ RodPoints points_of(const scenario::Scene& scene, const RodMesh& rod, const Mode
     if (rod.sphere_radius[i] > 0.0) points.ends_leg[i] = true;
   }
   for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    const bool turns = turns_rods(scene, scene.joints[j]);
     for (const auto& member : scene.joints[j].of) {
+      if (turns) enter(member.rod, member.at, true);
       if (member.rod != rod.name) continue;
       const std::size_t place = to_size(node_at(member.at, rod));
       points.joint[place] = static_cast<int>(j);
@@ -117,6 +135,15 @@ double tangent_direction(const RodMesh& rod, const Leg& leg, bool at_end, const 
   return at_end ? direction + half : direction - half;
 }
 
+/// How far the edges of a leg turn as drawn [rad].
+double reference_turn(const RodMesh& rod, const Leg& leg, const Model& model) {
+  double turn = 0.0;
+  for (Index node = leg.first + 1; node < leg.last; ++node) {
+    turn += angle_between(reference_edge(rod, node - 1, model), reference_edge(rod, node, model));
+  }
+  return turn;
+}
+
 }  // namespace
 
 std::vector<std::vector<JoinedPlace>> joined_places(const scenario::Scene& scene) {
@@ -148,7 +175,11 @@ void find_joints(const scenario::Scene& scene, Model& model) {
         leg.last = place;
         leg.end.rotation = rotation;
         leg.start.direction = tangent_direction(rod, leg, false, model);
-        leg.end.direction = tangent_direction(rod, leg, true, model);
+        if (!rod.legs.empty()) {
+          leg.start.direction = nearest_turn(leg.start.direction, rod.legs.back().end.direction);
+        }
+        leg.end.direction = nearest_turn(tangent_direction(rod, leg, true, model),
+                                         leg.start.direction + reference_turn(rod, leg, model));
         rod.legs.push_back(leg);
       }
       leg = {place, place, {rotation, 0.0}, {}};

@@ -105,6 +105,8 @@ class LegBuilder {
 }  // namespace
 
 void add_leg_elements(RodMesh& rod, bool with_arcs, Model& model) {
+  // The damping of an arc alone would let rotations lag behind that it hardly holds.
+  with_arcs = with_arcs && (rod.damping.stretching == 0.0 || rod.damping.bending > 0.0);
   rod.rest_turning_angle.assign(rod.nodes.size(), 0.0);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     elements_of<Stretch<2>>(*model.elements)

@@ -6,8 +6,10 @@
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/supports/clamp.hpp"
 #include "energies/add_element.hpp"
+#include "model/hinge_sides.hpp"
 
 namespace der {
 namespace {
@@ -18,6 +20,14 @@ const Clamp* clamp_there(const RodMesh& rod, double s) {
     return std::abs(rod.arc_length[static_cast<std::size_t>(clamp.place)] - s) <= rod.same_place();
   });
   return found == rod.clamps.end() ? nullptr : &*found;
+}
+
+/// The hinge between whose sides a moment acts; null: none.
+const scenario::Joint* hinge_of(const scenario::Moment& load, const scenario::Scene& scene) {
+  const auto found = std::find_if(scene.joints.begin(), scene.joints.end(), [&](const auto& joint) {
+    return joint.name == load.joint && joint.kind == scenario::JointKind::Hinge;
+  });
+  return load.joint.empty() || found == scene.joints.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -41,8 +51,19 @@ void add_load(const scenario::Moment& load, const LoadContext& context, Model& m
     model.named.push_back({context.name, false, {{"z", "N m", {control}}}});
   }
   if (!rod.legs.empty()) {
+    if (const scenario::Joint* hinge = hinge_of(load, context.scene)) {
+      const auto [first, second] = hinge_sides(*hinge, model);
+      model.controlled_forces.push_back({first, control, -1.0});
+      model.controlled_forces.push_back({second, control, 1.0});
+      return;
+    }
     const Index rotation = rod.rotation_at(node_at(load.at, rod));
-    if (rotation >= 0) {
+    // A clamp takes it up.
+    const auto is_here = [&](const HeldDof& held) {
+      return rotation >= 0 && held.dof == model.dofs.rotation(rotation);
+    };
+    const bool is_held = std::any_of(model.held.begin(), model.held.end(), is_here);
+    if (rotation >= 0 && !is_held) {
       model.controlled_forces.push_back({model.dofs.rotation(rotation), control, 1.0});
     }
     return;

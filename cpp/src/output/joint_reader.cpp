@@ -24,6 +24,46 @@ class RotationReader : public ProbeReader {
   Index dof_;
 };
 
+/// By how much the tangent of a rod at one of its nodes has turned.
+class TurnReader {
+ public:
+  TurnReader(const scenario::JointMember& member, const Model& model) {
+    const RodMesh& rod = model.rod(member.rod);
+    const Index place = node_at(member.at, rod);
+    std::size_t first = 0;
+    for (const Leg& leg : rod.legs) {
+      if (leg.first == place || leg.last == place) {
+        const bool at_end = leg.last == place;
+        sample_ = {{first + (at_end ? to_size(leg.num_cells()) : 0), 1.0}};
+        drawn_ = (at_end ? leg.end : leg.start).direction;
+      }
+      first += to_size(leg.num_cells()) + 1;
+    }
+    field_ = make_leg_field(LegQuantity::Slope, rod, model);
+  }
+  [[nodiscard]] double value(const Model& model, const State& state) const {
+    return field_->interpolate(sample_, model, state) - drawn_;
+  }
+
+ private:
+  std::unique_ptr<RodField> field_;
+  SampleWeights sample_;
+  double drawn_ = 0.0;
+};
+
+class AngleReader : public ProbeReader {
+ public:
+  AngleReader(const scenario::Joint& joint, const Model& model)
+      : first_(joint.of[0], model), second_(joint.of[1], model) {}
+  double value(const Model& model, const State& state) override {
+    return second_.value(model, state) - first_.value(model, state);
+  }
+
+ private:
+  TurnReader first_;
+  TurnReader second_;
+};
+
 /// The sum of what the legs of one rod exert at one of its nodes.
 class LegEndReader : public ProbeReader {
  public:
@@ -75,6 +115,9 @@ std::unique_ptr<ProbeReader> make_joint_reader(const scenario::Probe& probe,
     }
     throw Error("model_error", "probe '" + probe.name + "': no rod of joint '" + joint->name +
                                    "' has a stiffness against bending: it has no rotation");
+  }
+  if (quantity.of_joint == JointQuantity::Angle) {
+    return std::make_unique<AngleReader>(*joint, model);
   }
   const auto member = std::find_if(joint->of.begin(), joint->of.end(),
                                    [&](const auto& each) { return each.rod == *probe.leg; });

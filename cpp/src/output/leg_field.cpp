@@ -13,6 +13,7 @@
 #include "der/energies/end_cell.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/registry.hpp"
+#include "der/energies/strain_rate.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "model/leg_curvature.hpp"
@@ -25,10 +26,28 @@ namespace {
 /// Reads a moment [N m].
 using MomentReader = std::function<double(const Model& model, const State& state)>;
 
+/// The loads of internal damping that an element bears, V s'.
+template <class Kernel>
+auto viscous_loads(const typename Kernel::Constants& constants, const DampingTimes& times,
+                   const std::array<Index, to_size(Kernel::kDofs)>& dofs, const State& state) {
+  using Strain = StrainRate<Kernel>;
+  constexpr int n = Strain::kSize;
+  const Configuration here;  // elements of legs take no controls for their rates
+  const typename Strain::Rates rates =
+      Strain::gradient(constants, here, gather(dofs, state.positions)) *
+      gather(dofs, state.velocities);
+  return typename Strain::Rates(Strain::viscosity(constants, times).template topLeftCorner<n, n>() *
+                                rates);
+}
+
+/// Which loads: all that a section bears, or those that its strains alone make.
+enum class Part { Whole, Elastic };
+
 /// Reads what the arc of an edge adds to its tension, and to the moments beside it.
 class ArcReader {
  public:
-  ArcReader(const LegArc& arc, const Model& model) : arc_(arc) {
+  ArcReader(const LegArc& arc, const DampingTimes& damping, const Model& model)
+      : arc_(arc), damping_(damping) {
     for_each_list(*model.elements, [&](const auto& list) {
       using Kernel = typename std::decay_t<decltype(list)>::KernelType;
       enter(Kernel{}, list, model);
@@ -36,14 +55,14 @@ class ArcReader {
   }
 
   /// [N] In its edge.
-  [[nodiscard]] double tension(const Model& model, const State& state) const {
-    return loads_(model, state).front();
+  [[nodiscard]] double tension(Part part, const Model& model, const State& state) const {
+    return loads_(part, model, state).front();
   }
   /// [N m] At a node of the leg.
-  [[nodiscard]] double moment(Index node, const Model& model, const State& state) const {
+  [[nodiscard]] double moment(Index node, Part part, const Model& model, const State& state) const {
     const Index k = arc_.step * (node - arc_.angle);
     if (k < 0 || k > arc_.edges + arc_.joints - 2) return 0.0;
-    return arc_.step * loads_(model, state)[to_size(1 + k)];
+    return arc_.step * loads_(part, model, state)[to_size(1 + k)];
   }
 
  private:
@@ -57,9 +76,16 @@ class ArcReader {
     const auto constants = list.constants[to_size(arc_.number)];
     const auto dofs = list.dofs[to_size(arc_.number)];
     const ActuatedRest elongation(constants.elongation, 1, model);
-    loads_ = [constants, dofs, elongation](const Model& now, const State& state) {
-      const auto loads =
-          Kernel::loads(constants, elongation.value(0, now, state), gather(dofs, state.positions));
+    loads_ = [constants, dofs, elongation, times = damping_](Part part, const Model& now,
+                                                             const State& state) {
+      const auto x = gather(dofs, state.positions);
+      auto loads = Kernel::loads(constants, elongation.value(0, now, state), x);
+      if (part == Part::Whole && times.stretching > 0.0) {
+        const auto viscous = viscous_loads<Kernel>(constants, times, dofs, state);
+        const auto slopes = Kernel::arc_slopes(constants, x);
+        loads.tension += viscous[0] * slopes.length + viscous[1];
+        loads.moments += viscous[0] * slopes.angles;
+      }
       Loads all{loads.tension};
       std::copy_n(loads.moments.data(), Kernel::kAngles, all.begin() + 1);
       return all;
@@ -69,7 +95,8 @@ class ArcReader {
   using Loads = std::array<double, 5>;  // tension, and the moments along the element
 
   LegArc arc_;
-  std::function<Loads(const Model& model, const State& state)> loads_;
+  DampingTimes damping_;
+  std::function<Loads(Part part, const Model& model, const State& state)> loads_;
 };
 
 /// Reads quantities off the nodes and edges of one leg.
@@ -77,8 +104,9 @@ class LegReader {
  public:
   LegReader(const Leg& leg, const RodMesh& rod, const Model& model)
       : leg_(leg), rod_(rod), actuated_(rod) {
-    moments_.assign(to_size(leg.num_cells()) + 1,
-                    [](const Model& /*model*/, const State& /*state*/) { return 0.0; });
+    const MomentReader none = [](const Model& /*model*/, const State& /*state*/) { return 0.0; };
+    moments_.assign(to_size(leg.num_cells()) + 1, none);
+    viscous_.assign(moments_.size(), none);
     if (rod.EI > 0.0) {
       if (rod.curvature == scenario::CurvatureMeasure::Angle) {
         find_moments<AngleCurvature>(model);
@@ -90,7 +118,7 @@ class LegReader {
     for (Index edge = leg.first; edge < leg.last; ++edge) {
       elongations_.emplace_back(rod.natural_strain_entries.edge(edge), 1, model);
     }
-    for (const LegArc& arc : leg.arcs) arcs_.emplace_back(arc, model);
+    for (const LegArc& arc : leg.arcs) arcs_.emplace_back(arc, rod.damping, model);
     for (const bool from_start : {true, false}) {
       const Mat3 C = end_compliance(leg, from_start, rod.edge_length);
       End& end = from_start ? start_ : end_;
@@ -108,10 +136,11 @@ class LegReader {
 
   /// Moment [N m] in the curve of the leg at a node, counted from its start. A node inside a leg
   /// that knows its arcs is l^2/12 of the curvature beside the curve, and so is the force.
-  [[nodiscard]] double moment(Index node, const Model& model, const State& state) const {
-    const double there = transmitted(node, model, state);
+  [[nodiscard]] double moment(Index node, const Model& model, const State& state,
+                              Part part = Part::Whole) const {
+    const double there = transmitted(node, part, model, state);
     if (leg_.arcs.empty() || node == 0 || node == leg_.num_cells()) return there;
-    return there + tension(node, model, state) * beside(node, model, state);
+    return there + tension(node, model, state, part) * beside(node, model, state);
   }
   /// How far to the left of a node inside the leg the curve lies [m].
   [[nodiscard]] double beside(Index node, const Model& model, const State& state) const {
@@ -123,7 +152,8 @@ class LegReader {
     return natural_[to_size(node)] + actuated(node, model, state);
   }
   [[nodiscard]] double curvature(Index node, const Model& model, const State& state) const {
-    const double elastic = rod_.EI > 0.0 ? moment(node, model, state) / rod_.EI : 0.0;
+    const double elastic =
+        rod_.EI > 0.0 ? moment(node, model, state, Part::Elastic) / rod_.EI : 0.0;
     return elastic + natural_curvature(node, model, state);
   }
 
@@ -157,9 +187,10 @@ class LegReader {
 
   /// The force [N] that the rod behind a node exerts on the rod before it: linear through the
   /// middles of the two nearest edges.
-  [[nodiscard]] Vec2 force(Index node, const Model& model, const State& state) const {
+  [[nodiscard]] Vec2 force(Index node, const Model& model, const State& state,
+                           Part part = Part::Whole) const {
     const Index last = leg_.num_cells();
-    if (last == 1) return edge_force(0, model, state);
+    if (last == 1) return edge_force(0, part, model, state);
     const Index before = std::min(std::max<Index>(node - 1, 0), last - 2);
     const double a = length(before);
     const double b = length(before + 1);
@@ -167,13 +198,17 @@ class LegReader {
                                : node == before + 1 ? 0.5 * a
                                                     : 0.5 * a + b;
     const double share = from_middle / (0.5 * (a + b));
-    return (1.0 - share) * edge_force(before, model, state) +
-           share * edge_force(before + 1, model, state);
+    return (1.0 - share) * edge_force(before, part, model, state) +
+           share * edge_force(before + 1, part, model, state);
   }
   /// Its component along the tangent [N].
-  [[nodiscard]] double tension(Index node, const Model& model, const State& state) const {
+  [[nodiscard]] double tension(Index node, const Model& model, const State& state,
+                               Part part = Part::Whole) const {
     const double angle = tangent_angle(node, model, state);
-    return force(node, model, state).dot(Vec2{std::cos(angle), std::sin(angle)});
+    return force(node, model, state, part).dot(Vec2{std::cos(angle), std::sin(angle)});
+  }
+  [[nodiscard]] double strain(Index node, const Model& model, const State& state) const {
+    return tension(node, model, state, Part::Elastic) / rod_.EA;
   }
 
  private:
@@ -200,12 +235,14 @@ class LegReader {
   }
 
   /// The moment [N m] that the elements transmit at a node.
-  [[nodiscard]] double transmitted(Index node, const Model& model, const State& state) const {
+  [[nodiscard]] double transmitted(Index node, Part part, const Model& model,
+                                   const State& state) const {
     double sum = moments_[to_size(node)](model, state);
+    if (part == Part::Whole) sum += viscous_[to_size(node)](model, state);
     // An arc sees the nodes of its edge, and one more on either side.
     const Index last = std::min(node + 2, static_cast<Index>(arcs_.size()));
     for (Index edge = std::max<Index>(node - 2, 0); edge < last; ++edge) {
-      sum += arcs_[to_size(edge)].moment(node, model, state);
+      sum += arcs_[to_size(edge)].moment(node, part, model, state);
     }
     return sum;
   }
@@ -249,6 +286,13 @@ class LegReader {
                                         angle_between(before, after))
             .moment;
       };
+      if (rod_.damping.bending == 0.0) continue;
+      viscous_[to_size(node)] = [constants, dofs, times = rod_.damping](const Model& /*model*/,
+                                                                        const State& state) {
+        const auto [before, after] = PlanarBend<Curvature>::edges(gather(dofs, state.positions));
+        return Curvature::of(angle_between(before, after)).first *
+               viscous_loads<PlanarBend<Curvature>>(constants, times, dofs, state)[0];
+      };
     }
   }
 
@@ -267,6 +311,12 @@ class LegReader {
         typename Kernel::Angles natural = constants.rest;
         for (int i = 0; i < Kernel::kAngles; ++i) natural[i] += rest.value(i, now, state);
         return sign * Kernel::moments(constants, natural, gather(dofs, state.positions))[k];
+      };
+      if (rod_.damping.bending == 0.0) continue;
+      viscous_[to_size(node)] = [constants, dofs, sign, k, times = rod_.damping](
+                                    const Model& /*model*/, const State& state) {
+        return sign * Kernel::measure_slopes(constants, gather(dofs, state.positions))[k] *
+               viscous_loads<Kernel>(constants, times, dofs, state)[k];
       };
     }
   }
@@ -316,7 +366,7 @@ class LegReader {
                             const State& state) const {
     const bool from_start = &end == &start_;
     const double sign = from_start ? 1.0 : -1.0;
-    double lean = end.natural + sign * end.per_moment * moment(beside, model, state);
+    double lean = end.natural + sign * end.per_moment * moment(beside, model, state, Part::Elastic);
     for (Index k = 0; k <= std::min<Index>(leg_.num_cells(), 2); ++k) {
       const Index node = from_start ? k : leg_.num_cells() - k;
       lean += sign * end.lengths[k] * actuated(node, model, state);
@@ -340,15 +390,19 @@ class LegReader {
   }
 
   /// The force [N] that the rod behind an edge exerts on the rod before it.
-  [[nodiscard]] Vec2 edge_force(Index edge, const Model& model, const State& state) const {
+  [[nodiscard]] Vec2 edge_force(Index edge, Part part, const Model& model,
+                                const State& state) const {
     const Vec2 along = vector(edge, model, state);
     const double now = along.norm();
-    const double extension =
-        now - length(edge) - elongations_[to_size(edge)].value(0, model, state);
+    double extension = now - length(edge) - elongations_[to_size(edge)].value(0, model, state);
+    if (part == Part::Whole && rod_.damping.stretching > 0.0) {
+      const Vec2 rate = along_edge<2>(rod_.edge(leg_.first + edge, model), state.velocities);
+      extension += rod_.damping.stretching * along.dot(rate) / now;
+    }
     double tension = rod_.EA * extension / length(edge);
-    if (!arcs_.empty()) tension += arcs_[to_size(edge)].tension(model, state);
+    if (!arcs_.empty()) tension += arcs_[to_size(edge)].tension(part, model, state);
     const double shear =
-        (transmitted(edge, model, state) - transmitted(edge + 1, model, state)) / now;
+        (transmitted(edge, part, model, state) - transmitted(edge + 1, part, model, state)) / now;
     return (tension * along + shear * perpendicular(along)) / now;
   }
 
@@ -356,6 +410,7 @@ class LegReader {
   RodMesh rod_;
   ActuatedShape actuated_;
   std::vector<MomentReader> moments_;      // of each node, by its bending energy
+  std::vector<MomentReader> viscous_;      // by the damping of bending
   std::vector<ArcReader> arcs_;            // of each edge, or none
   std::vector<ActuatedRest> elongations_;  // [m] of each edge
   std::vector<double> drawn_;              // curvature of each node [1/m]
@@ -403,7 +458,7 @@ class LegPlaceField : public RodField {
 class LegField : public RodField {
  public:
   LegField(LegQuantity quantity, const RodMesh& rod, const Model& model)
-      : RodField(arc_lengths(rod)), quantity_(quantity), EA_(rod.EA) {
+      : RodField(arc_lengths(rod)), quantity_(quantity) {
     for (const Leg& leg : rod.legs) {
       for (Index node = 0; node <= leg.num_cells(); ++node) {
         places_.emplace_back(legs_.size(), node);
@@ -426,7 +481,7 @@ class LegField : public RodField {
       case LegQuantity::NaturalCurvature:
         return leg.natural_curvature(node, model, state);
       case LegQuantity::Strain:
-        return leg.tension(node, model, state) / EA_;
+        return leg.strain(node, model, state);
       case LegQuantity::Tension:
         return leg.tension(node, model, state);
       case LegQuantity::ForceX:
@@ -456,7 +511,6 @@ class LegField : public RodField {
   }
 
   LegQuantity quantity_;
-  double EA_;
   std::vector<LegReader> legs_;
   std::vector<std::pair<std::size_t, Index>> places_;  // of each sample: its leg, its node there
   std::vector<bool> smooth_;

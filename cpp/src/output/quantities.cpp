@@ -252,6 +252,9 @@ std::vector<Quantity> quantities_of_joints() {
       of_joint(JointQuantity::Rotation, "rotation", "rad",
                "rotation of a rigid joint from the initial shape, counter-clockwise, whole turns "
                "included"),
+      of_joint(JointQuantity::Angle, "angle", "rad",
+               "by how much the second rod of a hinge of two has turned against the first from the "
+               "initial shape, counter-clockwise, whole turns included"),
       of_joint(JointQuantity::ForceX, "force_x", "N",
                "x component of the force that a rod exerts on a joint"),
       of_joint(JointQuantity::ForceY, "force_y", "N", "y component of that force"),

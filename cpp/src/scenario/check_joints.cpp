@@ -44,6 +44,7 @@ class JointCheck {
       members.push_back(*member);
     }
     if (!meet(number, members)) return;
+    check_sides(number, members);
     for (std::size_t k = 0; k < members.size(); ++k) enter(number, members, k);
   }
 
@@ -96,6 +97,29 @@ class JointCheck {
       here = first;
     }
     return true;
+  }
+
+  /// A spring or a damping acts between the two rods of a hinge.
+  void check_sides(int number, const std::vector<Member>& members) {
+    const Joint& joint = joint_of(number);
+    if (!joint.has_sides()) return;
+    const Path path = joint_path(number) / (joint.spring ? "spring" : "damping");
+    if (joint.kind == JointKind::Rigid) {
+      report(path,
+             "the rods of a rigid joint do not turn against one another: write 'kind: hinge', "
+             "or remove it");
+      return;
+    }
+    if (members.size() != 2) {
+      report(path, fmt::format("acts between two rods, and {} meet in this hinge", members.size()));
+      return;
+    }
+    for (const Member& member : members) {
+      const Rod& rod = context_.scene.rods[static_cast<std::size_t>(member.rod)];
+      if (!does_not_bend(rod)) continue;
+      report(path, fmt::format("rod '{}' has no stiffness against bending, EI: it bears no moment",
+                               rod.name));
+    }
   }
 
   /// Tells who else is at the place of a member.
@@ -213,7 +237,6 @@ class JointedSceneCheck {
 
   void check_rod(const Rod& rod, const Path& path) {
     if (rod.closed) lacks(path / "closed", "a closed rod");
-    if (damping_of(rod).any()) lacks(path, "internal damping");
   }
   void lacks(const Path& where, const std::string& what) {
     report(where, fmt::format("this version does not have {} in a scene with joints", what));

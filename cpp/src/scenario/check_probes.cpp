@@ -121,7 +121,12 @@ class ProbeCheck {
     }
     const Joint* joint = find_joint(context_, *probe_.joint, path_ / "joint");
     if (joint == nullptr) return;
-    if (quantity == JointQuantity::Rotation) {
+    if (quantity == JointQuantity::Angle) {
+      if (joint->kind == JointKind::Hinge && joint->of.size() == 2) return;
+      report(path_ / "quantity",
+             fmt::format("'{}' is of a hinge of two rods, which joint '{}' is not", probe_.quantity,
+                         joint->name));
+    } else if (quantity == JointQuantity::Rotation) {
       if (joint->kind == JointKind::Rigid) return;
       report(path_ / "quantity",
              fmt::format("each rod has its own rotation in hinge '{}': take the 'slope' of a rod "

@@ -10,6 +10,13 @@ Format<JointMember> member_format() {
                      .required("at", &JointMember::at, location(), "The place, an end or inside."));
 }
 
+Format<HingeSpring> spring_format() {
+  return mapping(Table<HingeSpring>("spring of a hinge",
+                                    "Holds two rods at the angle at which they are drawn.")
+                     .required("rotational_stiffness", &HingeSpring::rotational_stiffness,
+                               number("N m/rad", positive()), "Moment per angle."));
+}
+
 }  // namespace
 
 Format<Joint> joint_format() {
@@ -24,7 +31,11 @@ Format<Joint> joint_format() {
                           JointKind::Rigid},
                          {{"hinge", "each rod turns freely about the others"}, JointKind::Hinge}},
                         {{"ball", "in a plane a ball is a hinge: write 'hinge'"}}),
-                    "How they are joined."));
+                    "How they are joined.")
+          .optional("spring", &Joint::spring, spring_format(),
+                    "Only with `kind: hinge`, between two rods: a spring that turns with them.")
+          .optional("damping", &Joint::damping, number("N m s/rad", not_negative()),
+                    "Likewise: moment per rate of the angle between the two.", "0"));
 }
 
 }  // namespace der::scenario

@@ -223,6 +223,13 @@ void name_members(CheckContext& context) {
                                               "the 'rod' and 'at' in place of 'joint'",
                                               joint->name));
   };
+  const auto need_sides = [&](const Joint* joint, const Path& path) {
+    if (joint == nullptr || joint->kind == JointKind::Rigid || joint->of.size() == 2) return;
+    context.diagnostics.add(
+        path, fmt::format("a moment acts between two rods, and {} meet in hinge '{}': write the "
+                          "'rod' and 'at' of each on which one acts",
+                          joint->of.size(), joint->name));
+  };
   for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
     Support& support = scene.supports[static_cast<std::size_t>(i)];
     if (support.joint.empty()) continue;
@@ -240,7 +247,7 @@ void name_members(CheckContext& context) {
             if (what.joint.empty()) return;
             const Path path = Path{"loads", i, Kind::kKey} / "joint";
             const Joint* joint = take(what.joint, path, what.rod, what.at);
-            if (std::is_same_v<Kind, Moment>) need_rigid(joint, path);
+            if constexpr (std::is_same_v<Kind, Moment>) need_sides(joint, path);
           }
         },
         scene.loads[static_cast<std::size_t>(i)].what);

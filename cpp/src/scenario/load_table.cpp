@@ -108,7 +108,10 @@ Format<MomentText> moment_format() {
           .optional("at", &Moment::at,
                     single_location("'all' is not a single place, and a moment acts at one"),
                     "Where; any arc length.")
-          .optional("joint", &Moment::joint, name(), "In place of `rod` and `at`: a rigid joint.")
+          .optional("joint", &Moment::joint, name(),
+                    "In place of `rod` and `at`: a rigid joint; or a hinge of two rods, between "
+                    "which the "
+                    "moment acts: as it is on the second, the opposite on the first.")
           .either({{"rod", "at"}, {"joint"}})
           .required("moment", &MomentText::value, moment_value_format(),
                     "A number: about z, positive counter-clockwise. A vector in a scene of three "

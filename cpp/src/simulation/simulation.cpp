@@ -147,17 +147,19 @@ Simulation::Simulation(std::shared_ptr<const Constants> constants, const Simulat
 }
 
 void Simulation::start_anew() {
-  settle_rotations();
+  settle_rotations(JointRotations::Which::Undamped);
   forget_steps(state_);
   start_ledger(model_, state_);
   energy_monitor_.begin(state_);
 }
 
-void Simulation::settle_rotations() {
+void Simulation::settle_rotations(JointRotations::Which which) {
   if (!model_.has_rotations() || !find_nonfinite().empty()) return;
-  Vector controls;
-  evaluate_controls(model_, state_, state_.time, controls);
-  JointRotations(model_).settle(controls, state_.extra_force, state_.positions);
+  Configuration here;
+  evaluate_controls(model_, state_, state_.time, here.controls);
+  JointRotations(model_, which).settle(here.controls, state_.extra_force, state_.positions);
+  here.coordinates = state_.positions;
+  JointRotations(model_).set_rates(here, state_.extra_force, state_.velocities);
 }
 
 std::string Simulation::find_nonfinite() const {

@@ -7,67 +7,125 @@
 #include <type_traits>
 
 #include "der/core/index.hpp"
+#include "der/energies/arc_stretch.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/num_joints.hpp"
 #include "der/energies/registry.hpp"
+#include "der/energies/strain_rate.hpp"
+#include "der/energies/viscous_term.hpp"
+#include "der/kinematics/hermite.hpp"
 
 namespace der {
 namespace {
 
 constexpr double kRounding = 1e-15;  // [rad], and of a rotation
+constexpr int kMostIterations = 20;
+
+template <class Kernel>
+constexpr bool kIsDamped = NumJoints<Kernel>::value > 0 && StrainRate<Kernel>::kExists;
 
 }  // namespace
 
-/// Calls use(list, e, rotations) for each element that rotations have a part in; `rotations` are
-/// their numbers among the free ones, -1 of a held one and of none.
+/// The numbers of the rotations of an element among the free ones, -1 of a held one and of none.
+template <class Kernel>
+std::array<Index, 2> JointRotations::rotations_of(
+    const std::array<Index, to_size(Kernel::kDofs)>& dofs) const {
+  std::array<Index, 2> rotations{-1, -1};
+  for (int i = 0; i < Kernel::kJoints; ++i) {
+    rotations[to_size(i)] = number_of(dofs[to_size(Kernel::kDofs - Kernel::kJoints + i)]);
+  }
+  return rotations;
+}
+
+/// Calls use(list, e, rotations) for each element that rotations have a part in.
 template <class Use>
 void JointRotations::for_each_element(const Use& use) const {
   for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (NumJoints<Kernel>::value > 0) {
-      for (std::size_t e = 0; e < list.size(); ++e) {
-        std::array<Index, 2> rotations{-1, -1};
-        for (int i = 0; i < Kernel::kJoints; ++i) {
-          const auto place = static_cast<std::size_t>(Kernel::kDofs - Kernel::kJoints + i);
-          rotations[to_size(i)] = number_of(list.dofs[e][place]);
-        }
-        use(list, e, rotations);
+      for (std::size_t e = 0; e < list.size(); ++e)
+        use(list, e, rotations_of<Kernel>(list.dofs[e]));
+    }
+  });
+}
+
+/// Calls use(list, damped, rotations) for each of these with internal damping.
+template <class Use>
+void JointRotations::for_each_damped(const Use& use) const {
+  for_each_list(*model_.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (kIsDamped<Kernel>) {
+      for (const DampedElement& damped : list.damped) {
+        use(list, damped, rotations_of<Kernel>(list.dofs[damped.element]));
       }
     }
   });
+}
+
+/// Calls use(number, dof) for each free rotation.
+template <class Use>
+void JointRotations::for_each_free(const Use& use) const {
+  for (std::size_t i = 0; i < free_.size(); ++i) use(static_cast<Index>(i), free_[i]);
 }
 
 Index JointRotations::number_of(Index dof) const {
   return number_[to_size(dof - model_.dofs.rotation(0))];
 }
 
-JointRotations::JointRotations(const Model& model) : model_(model) {
+/// A rotation lags behind where the bending beside it is damped.
+void JointRotations::find_lagging(const Model& model) {
+  lags_.assign(to_size(model.dofs.num_rotations()), false);
+  for_each_list(*model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (kIsDamped<Kernel>) {
+      if (IsArcStretch<Kernel>::value) return;
+      for (const DampedElement& damped : list.damped) {
+        const auto& dofs = list.dofs[damped.element];
+        for (auto dof = dofs.end() - Kernel::kJoints; dof != dofs.end(); ++dof) {
+          lags_[to_size(*dof - model.dofs.rotation(0))] = true;
+        }
+      }
+    }
+  });
+}
+
+JointRotations::JointRotations(const Model& model, Which which) : model_(model) {
   const DofMap& dofs = model.dofs;
+  find_lagging(model);
   for (Index i = 0; i < dofs.num_rotations(); ++i) {
     const bool is_free = dofs.is_free(dofs.rotation(i));
-    number_.push_back(is_free ? static_cast<Index>(free_.size()) : -1);
-    if (is_free) free_.push_back(dofs.rotation(i));
+    any_lags_ = any_lags_ || (is_free && lags_[to_size(i)]);
+    const bool is_unknown = is_free && (which == Which::All || !lags_[to_size(i)]);
+    number_.push_back(is_unknown ? static_cast<Index>(free_.size()) : -1);
+    if (is_unknown) free_.push_back(dofs.rotation(i));
   }
   const auto acts_here = [&](const ControlledForce& force) {
-    return force.dof >= dofs.rotation(0) && dofs.is_free(force.dof);
+    return force.dof >= dofs.rotation(0) && number_of(force.dof) >= 0;
   };
   std::copy_if(model.controlled_forces.begin(), model.controlled_forces.end(),
                std::back_inserter(moments_), acts_here);
-  beside_.resize(free_.size());
-  for_each_element([&](const auto& /*list*/, std::size_t /*e*/, const auto& rotations) {
-    if (rotations[0] < 0 || rotations[1] < 0) return;
-    for (const Index rotation : rotations) beside_[to_size(rotation)].push_back(couplings_.size());
-    couplings_.push_back({to_size(rotations[0]), to_size(rotations[1]), 0.0});
-  });
+  const auto couple = [&](const auto& /*list*/, const auto& /*element*/, const auto& rotations) {
+    if (rotations[0] >= 0 && rotations[1] >= 0) couplings_.push_back({rotations[0], rotations[1]});
+  };
+  for_each_element(couple);
+  for_each_damped(couple);
   const auto size = static_cast<Index>(free_.size());
-  for (Vector* each : {&residual_, &stiffness_, &step_}) each->setZero(size);
+  for (Vector* each :
+       {&reference_, &residual_, &stiffness_, &step_, &direction_, &along_, &remains_, &scaled_}) {
+    each->setZero(size);
+  }
   here_ = {Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())};
+  velocities_.setZero(model.num_dofs());
 }
 
-/// Sets the gradient of the energy, and the stiffness, by the free rotations.
-void JointRotations::assemble() {
+void JointRotations::begin_system() {
   residual_.setZero();
   stiffness_.setZero();
+  for (Coupling& coupling : couplings_) coupling.value = 0.0;
+}
+
+/// Adds the gradient of the energy, and the stiffness, by the free rotations.
+void JointRotations::add_elastic() {
   auto coupling = couplings_.begin();
   for_each_element([&](const auto& list, std::size_t e, const auto& rotations) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
@@ -89,32 +147,86 @@ void JointRotations::assemble() {
   });
 }
 
-/// Gauss-Seidel's method: a leg of one cell couples its two rotations by half the stiffness that it
-/// has on the diagonal at most, so that each sweep divides the error by 4.
-void JointRotations::solve() {
-  constexpr int kMostSweeps = 100;
-  step_.setZero();
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    double change = 0.0;
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      const auto k = static_cast<Index>(i);
-      double moment = residual_[k];
-      for (const std::size_t number : beside_[i]) {
-        const Coupling& coupling = couplings_[number];
-        moment -=
-            coupling.value * step_[static_cast<Index>(coupling.a == i ? coupling.b : coupling.a)];
-      }
-      const double before = step_[k];
-      step_[k] = moment / stiffness_[k];
-      change = std::max(change, std::abs(step_[k] - before));
+/// Adds the moments of internal damping at the velocities, and `rate_factor` times their
+/// derivatives by the rates of the free rotations.
+void JointRotations::add_viscous(double rate_factor) {
+  const Vector none;
+  auto coupling = couplings_.end();
+  for_each_damped([&](const auto& /*list*/, const auto& /*damped*/, const auto& rotations) {
+    if (rotations[0] >= 0 && rotations[1] >= 0) --coupling;
+  });
+  for_each_damped([&](const auto& list, const DampedElement& damped, const auto& rotations) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    constexpr Index kFirst = Kernel::kDofs - Kernel::kJoints;
+    const auto term = viscous_term(list, damped, {here_, velocities_, none});
+    const auto matrix = viscous_matrix(list, damped, here_);
+    for (Index i = 0; i < Kernel::kJoints; ++i) {
+      const Index number = rotations[to_size(i)];
+      if (number < 0) continue;
+      residual_[number] += term.gradient[kFirst + i];
+      stiffness_[number] += rate_factor * matrix(kFirst + i, kFirst + i);
     }
-    if (couplings_.empty() || change <= kRounding) return;
+    if constexpr (Kernel::kJoints == 2) {
+      if (rotations[0] >= 0 && rotations[1] >= 0) {
+        (coupling++)->value = rate_factor * matrix(kFirst + 1, kFirst);
+      }
+    }
+  });
+}
+
+void JointRotations::subtract_moments(const Vector& extra_force) {
+  for (const auto& [dof, control, weight] : moments_) {
+    residual_[number_of(dof)] -= weight * here_.controls[control];
   }
+  for_each_free([&](Index i, Index dof) { residual_[i] -= extra_force[dof]; });
+}
+
+/// By conjugate gradients, with the diagonal as preconditioner: the stiffness by rotations is
+/// positive. Without couplings it is done at once. The damping of a hinge alone leaves the common
+/// rate of its sides alone, and so does this.
+void JointRotations::solve() {
+  constexpr double kSmall = 1e-14;
+  constexpr double kSingular = 1e-12;
+  step_.setZero();
+  remains_ = residual_;
+  double slope = 0.0;
+  const Index most = couplings_.empty() ? 1 : 2 * static_cast<Index>(free_.size()) + 10;
+  for (Index i = 0; i < most; ++i) {
+    scaled_ = remains_.cwiseQuotient(stiffness_);
+    const double before = slope;
+    slope = remains_.dot(scaled_);
+    if (i == 0) {
+      direction_ = scaled_;
+    } else {
+      direction_ = scaled_ + slope / before * direction_;
+    }
+    along_ = stiffness_.cwiseProduct(direction_);
+    for (const auto& [first, second, value] : couplings_) {
+      along_[first] += value * direction_[second];
+      along_[second] += value * direction_[first];
+    }
+    const double curvature = direction_.dot(along_);
+    if (!(curvature > kSingular * direction_.cwiseAbs2().dot(stiffness_))) return;
+    const double way = slope / curvature;
+    step_ += way * direction_;
+    remains_ -= way * along_;
+    if (remains_.lpNorm<Eigen::Infinity>() <= kSmall * residual_.lpNorm<Eigen::Infinity>()) return;
+  }
+}
+
+/// Takes the step from the rotations in `coordinates`; returns whether it was one of rounding.
+bool JointRotations::take(Vector& coordinates) const {
+  bool settled = true;
+  for_each_free([&](Index i, Index dof) {
+    double& rotation = coordinates[dof];
+    rotation -= step_[i];
+    settled = settled && std::abs(step_[i]) <= 8.0 * kRounding * (1.0 + std::abs(rotation));
+  });
+  return settled;
 }
 
 double JointRotations::settle(const Vector& controls, const Vector& extra_force,
                               Vector& coordinates) {
-  constexpr int kMost = 20;
   double work = 0.0;
   if (free_.empty()) return work;
   here_.controls = controls;
@@ -125,27 +237,97 @@ double JointRotations::settle(const Vector& controls, const Vector& extra_force,
     for (const Index dof : free_) work += sign * extra_force[dof] * coordinates[dof];
   };
   add_work(-1.0);
-  bool settled = false;
-  for (int iteration = 0; iteration < kMost && !settled; ++iteration) {
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     here_.coordinates = coordinates;
-    assemble();
-    for (const auto& [dof, control, weight] : moments_) {
-      residual_[number_of(dof)] -= weight * controls[control];
-    }
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      residual_[static_cast<Index>(i)] -= extra_force[free_[i]];
-    }
+    begin_system();
+    add_elastic();
+    subtract_moments(extra_force);
     solve();
-    settled = true;
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      double& rotation = coordinates[free_[i]];
-      const double step = step_[static_cast<Index>(i)];
-      rotation -= step;
-      settled = settled && std::abs(step) <= 8.0 * kRounding * (1.0 + std::abs(rotation));
-    }
+    if (take(coordinates)) break;
   }
   add_work(1.0);
   return work;
+}
+
+void JointRotations::set_rates(const Configuration& here, const Vector& extra_force,
+                               Vector& velocities) {
+  if (!any_lags_ || free_.empty()) return;
+  here_.coordinates = here.coordinates;
+  here_.controls = here.controls;
+  velocities_ = velocities;
+  begin_system();
+  add_elastic();
+  subtract_moments(extra_force);
+  stiffness_.setZero();
+  for (Coupling& coupling : couplings_) coupling.value = 0.0;
+  add_viscous(1.0);
+  for_each_free([&](Index i, Index dof) {
+    if (lags_[to_size(dof - model_.dofs.rotation(0))]) return;
+    residual_[i] = 0.0;
+    stiffness_[i] = 1.0;
+  });
+  solve();
+  for_each_free([&](Index i, Index dof) {
+    if (lags_[to_size(dof - model_.dofs.rotation(0))]) velocities[dof] -= step_[i];
+  });
+}
+
+/// Solves for the rotations of `here_`, whose rates are `rate_factor` times what they are beyond
+/// the reference.
+void JointRotations::solve_stage(double rate_factor, const Vector& extra_force) {
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    for_each_free([&](Index i, Index dof) {
+      velocities_[dof] = rate_factor * (here_.coordinates[dof] - reference_[i]);
+    });
+    begin_system();
+    add_elastic();
+    add_viscous(rate_factor);
+    subtract_moments(extra_force);
+    solve();
+    if (take(here_.coordinates)) break;
+  }
+  for_each_free([&](Index i, Index dof) {
+    velocities_[dof] = rate_factor * (here_.coordinates[dof] - reference_[i]);
+  });
+}
+
+JointRotations::Works JointRotations::advance(const Motion& motion, Vector& coordinates,
+                                              Vector& velocities) {
+  constexpr double kDiagonal = 1.0 - 0.70710678118654752;
+  const auto& [state, start, start_rate, dt] = motion;
+  const Vector& extra_force = state.extra_force;
+  const double rate_factor = 1.0 / (kDiagonal * dt);
+  for_each_free([&](Index i, Index dof) { reference_[i] = start[dof]; });
+  for (const double part : {kDiagonal, 1.0}) {
+    const Hermite weight(part, dt);
+    here_.coordinates = weight.value(start, coordinates, start_rate, velocities);
+    velocities_ = weight.rate(start, coordinates, start_rate, velocities);
+    for_each_free([&](Index i, Index dof) { here_.coordinates[dof] = reference_[i]; });
+    evaluate_controls(model_, state, state.time + part * dt, here_.controls);
+    solve_stage(rate_factor, extra_force);
+    if (part == 1.0) break;
+    for_each_free([&](Index i, Index dof) {
+      reference_[i] = start[dof] + (1.0 - kDiagonal) * dt * velocities_[dof];
+    });
+  }
+  // The moments at the end on the way there.
+  Works works;
+  begin_system();
+  add_elastic();
+  const auto way = [&](Index dof) { return here_.coordinates[dof] - coordinates[dof]; };
+  for (const auto& [dof, control, weight] : moments_) {
+    works.loads += weight * here_.controls[control] * way(dof);
+  }
+  for_each_free([&](Index i, Index dof) {
+    works.loads += extra_force[dof] * way(dof);
+    works.drag -= residual_[i] * way(dof);
+  });
+  works.drag += works.loads;
+  for_each_free([&](Index /*i*/, Index dof) {
+    coordinates[dof] = here_.coordinates[dof];
+    velocities[dof] = velocities_[dof];
+  });
+  return works;
 }
 
 }  // namespace der

@@ -1,5 +1,6 @@
 #include "der/steppers/dense_output.hpp"
 
+#include "der/kinematics/hermite.hpp"
 #include "der/model/gravity.hpp"
 #include "der/model/internal_damping.hpp"
 #include "der/model/moment_place.hpp"
@@ -7,29 +8,11 @@
 #include "der/steppers/work.hpp"
 
 namespace der {
-namespace {
-
-/// The cubic with values x0, x1 and slopes v0, v1 at the ends of an interval of length h, and its
-/// slope, at the fraction u of it.
-struct Hermite {
-  Hermite(double u, double h)
-      : x0((1.0 + 2.0 * u) * (1.0 - u) * (1.0 - u)),
-        x1(u * u * (3.0 - 2.0 * u)),
-        v0(h * u * (1.0 - u) * (1.0 - u)),
-        v1(-h * u * u * (1.0 - u)),
-        slope_x((6.0 * u - 6.0 * u * u) / h),
-        slope_v0((1.0 - u) * (1.0 - 3.0 * u)),
-        slope_v1(u * (3.0 * u - 2.0)) {}
-  double x0, x1, v0, v1;
-  double slope_x, slope_v0, slope_v1;
-};
-
-}  // namespace
 
 DenseOutput::DenseOutput(const Model& model, const Assembler& assembler)
     : model_(model),
       force_(model, assembler),
-      rotations_(model),
+      rotations_(model, JointRotations::Which::Undamped),
       velocities_(Vector::Zero(model.num_dofs())),
       controls_(Vector::Zero(model.tables.size())),
       before_{Vector::Zero(model.num_dofs()), controls_},
@@ -40,10 +23,8 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
   const Hermite weight((time - start.time) / h, h);
   result = end;
   result.time = time;
-  result.positions = weight.x0 * start.positions + weight.x1 * end.positions +
-                     weight.v0 * start.velocities + weight.v1 * end.velocities;
-  result.velocities = weight.slope_x * (end.positions - start.positions) +
-                      weight.slope_v0 * start.velocities + weight.slope_v1 * end.velocities;
+  result.positions = weight.value(start.positions, end.positions, start.velocities, end.velocities);
+  result.velocities = weight.rate(start.positions, end.positions, start.velocities, end.velocities);
   evaluate_controls(model_, end, time, controls_);
   apply_prescribed_motion(model_, controls_, result.positions);
   if (model_.has_sections()) follow(model_, result);
@@ -61,8 +42,8 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
   const Work power_end = powers(end, start, end);
   for (double Work::* part :
        {&Work::loads, &Work::supports, &Work::actuation, &Work::drag, &Work::solver}) {
-    result.work.*part = weight.x0 * (work_start.*part) + weight.x1 * (end.work.*part) +
-                        weight.v0 * (power_start.*part) + weight.v1 * (power_end.*part);
+    result.work.*part =
+        weight.value(work_start.*part, end.work.*part, power_start.*part, power_end.*part);
   }
 }
 

@@ -37,6 +37,7 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       supports_move_(any_support_moves(model)),
       mass_(model),
       rotations_(model),
+      settled_(model, JointRotations::Which::Undamped),
       here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       scratch_controls_(here_.controls),
       force_(Vector::Zero(model.num_dofs())),
@@ -114,7 +115,23 @@ void ExplicitForce::set_viscous_force(const State& state, const Vector& velociti
   const double until = state.time + (state.last_step > 0.0 ? state.last_step : kShort);
   set_turn_rates(model_, state, state.time, std::max(time, until), time, turn_rates_);
   viscous_.setZero();
-  add_viscous_forces(model_, {here_, velocities, turn_rates_}, viscous_);
+  rates_ = velocities;
+  rotations_.set_rates(here_, state.extra_force, rates_);
+  add_viscous_forces(model_, {here_, rates_, turn_rates_}, viscous_);
+}
+
+void ExplicitForce::advance_rotations(const State& state, double dt, const Vector& velocities,
+                                      Vector& positions) {
+  if (!rotations_.any_lags()) return;
+  rates_ = velocities;
+  rotations_.advance({state, state.positions, state.velocities, dt}, positions, rates_);
+}
+
+void ExplicitForce::set_rotation_rates(const State& state, Vector& velocities) {
+  if (!rotations_.any_lags()) return;
+  here_.coordinates = state.positions;
+  evaluate_controls(model_, state, state.time, here_.controls);
+  rotations_.set_rates(here_, state.extra_force, velocities);
 }
 
 void ExplicitForce::evaluate_gradient() {
@@ -139,7 +156,7 @@ void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, 
   here_.coordinates = positions;
   here_.load_factor = state.load_factor;
   evaluate_controls(model_, state, time, here_.controls);
-  rotations_.settle(here_.controls, state.extra_force, here_.coordinates);
+  settled_.settle(here_.controls, state.extra_force, here_.coordinates);
   external_force(model_, here_, state.extra_force, force_);
 }
 

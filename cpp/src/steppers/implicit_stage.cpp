@@ -20,13 +20,14 @@ constexpr double kLargeGyroscopicShare = 0.3;
 }  // namespace
 
 ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                             const NewtonOptions& options, StepCommit::HeldVelocities held)
+                             const NewtonOptions& options, StepCommit::HeldVelocities held,
+                             StepCommit::LaggingRotations lagging)
     : equation(model),
       here{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       model_(model),
       problem_(model, assembler, model.mass),
       newton_(model.dofs, solver, assembler.num_values(), options),
-      finisher_(model, held),
+      finisher_(model, held, lagging),
       controls_(model),
       held_controls_(Vector::Zero(model.tables.size())),
       displacement_(Vector::Zero(model.num_dofs())),

@@ -23,7 +23,9 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
                                const StepperOptions& options)
       : tableau_(tableau),
         model_(model),
-        stage_(model, assembler, solver, options.newton, ImplicitStage::held_velocities(model)),
+        stage_(model, assembler, solver, options.newton, ImplicitStage::held_velocities(model),
+               tableau.is_l_stable() ? StepCommit::LaggingRotations::OfScheme
+                                     : StepCommit::LaggingRotations::OfCommit),
         start_acceleration_(model.num_dofs()),
         past_displacement_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
@@ -73,6 +75,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     if (!model_.viscous) {
       velocities_in_step(model_, state, end_positions_, dt, state.time, past_velocities_);
     }
+    start_force_->set_rotation_rates(state, past_velocities_);
     velocities_.col(0) = past_velocities_;
     start_force_->acceleration(state, state.positions, past_velocities_, state.time, 0.0,
                                start_acceleration_);

@@ -8,10 +8,13 @@
 
 namespace der {
 
-StepCommit::StepCommit(const Model& model, HeldVelocities held)
+StepCommit::StepCommit(const Model& model, HeldVelocities held, LaggingRotations lagging)
     : model_(model),
       held_velocities_(held),
-      rotations_(model),
+      rotations_(model, lagging == LaggingRotations::OfScheme ? JointRotations::Which::Undamped
+                                                              : JointRotations::Which::All),
+      lagging_(model),
+      advances_rotations_(lagging == LaggingRotations::OfCommit && rotations_.any_lags()),
       controls_work_(any_clamp_turns(model) || model.natural_strain.is_actuated()),
       start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       end_(start_),
@@ -21,6 +24,7 @@ StepCommit::StepCommit(const Model& model, HeldVelocities held)
 void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,
                         double dt, State& state) {
   configuration_of(model_, state, start_);
+  if (advances_rotations_) start_velocities_ = state.velocities;
   end_.coordinates = positions;
   evaluate_controls(model_, state, state.time + dt, end_.controls);
   const ControlWork work = follow_and_work(state);
@@ -48,7 +52,7 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
     state.velocities[dof] = velocities[dof];
     state.positions[dof] = positions[dof];
   }
-  settle_rotations(dt, state);
+  move_rotations(dt, state);
   if (drives) {
     // Clamps work against the viscous loads beside them, which take that up.
     const double power = driven_power(end_, state, dt, state.time + dt);
@@ -59,16 +63,26 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
   state.last_step = dt;
 }
 
-/// A scheme can only guess rotations, which have no inertia. Their mean rate is the guess for the
-/// next step.
-void StepCommit::settle_rotations(double dt, State& state) {
+/// A scheme can only guess rotations that the places of nodes determine. Their mean rate is the
+/// guess for the next step.
+void StepCommit::move_rotations(double dt, State& state) {
   if (!model_.has_rotations()) return;
-  state.work.loads += rotations_.settle(end_.controls, state.extra_force, state.positions);
+  if (advances_rotations_) {
+    const JointRotations::Works works = rotations_.advance(
+        {state, start_.coordinates, start_velocities_, dt}, state.positions, state.velocities);
+    state.work.loads += works.loads;
+    state.work.drag += works.drag;
+  } else {
+    state.work.loads += rotations_.settle(end_.controls, state.extra_force, state.positions);
+    end_.coordinates = state.positions;
+    lagging_.set_rates(end_, state.extra_force, state.velocities);
+  }
   for (Index i = 0; i < model_.dofs.num_rotations(); ++i) {
     const Index dof = model_.dofs.rotation(i);
     if (!model_.dofs.is_free(dof)) continue;
-    state.velocities[dof] = (state.positions[dof] - start_.coordinates[dof]) / dt;
     state.accelerations[dof] = 0.0;
+    if (rotations_.lags(i)) continue;
+    state.velocities[dof] = (state.positions[dof] - start_.coordinates[dof]) / dt;
   }
 }
 

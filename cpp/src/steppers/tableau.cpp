@@ -1,6 +1,7 @@
 #include "der/steppers/tableau.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -20,6 +21,22 @@ bool Tableau::stiffly_accurate() const {
   const auto last = to_size(stages - 1);
   return weights[last] == diagonal &&
          std::equal(below[last].begin(), below[last].begin() + (stages - 1), weights.begin());
+}
+
+bool Tableau::is_l_stable() const {
+  if (stiffly_accurate()) return true;
+  if (explicit_first) return false;
+  // Each stage is then 0, so that its slope is minus what is there before it, over a_ii dt.
+  constexpr double kRounding = 1e-10;  // of coefficients that are given to 13 digits
+  std::array<double, to_size(kMaxStages)> slopes{};
+  double result = 1.0;
+  for (std::size_t i = 0; i < to_size(stages); ++i) {
+    double before = 1.0;
+    for (std::size_t j = 0; j < i; ++j) before += below[i][j] * slopes[j];
+    slopes[i] = -before / diagonal;
+    result += weights[i] * slopes[i];
+  }
+  return std::abs(result) < kRounding;
 }
 
 constexpr Tableau kImplicitEuler{1, false, 1.0, {}, {1.0}};

@@ -31,6 +31,7 @@ class Verlet final : public Stepper {
       velocities_in_step(model_, state, positions_, dt, state.time + half, velocities_);
     }
     force_.apply_prescribed_motion_at(state, state.time + half, positions_);
+    force_.advance_rotations(state, half, state.velocities, positions_);
     if (!force_.acceleration(state, positions_, velocities_, state.time + half, half,
                              acceleration_)) {
       return {StepOutcome::Diverged, 0, model_.dofs.most_moved(acceleration_),

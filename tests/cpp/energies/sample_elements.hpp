@@ -271,6 +271,10 @@ inline JointSpring::Constants sample_constants(const JointSpring&, Random& rando
   return {uniform(random, 0.5, 5.0)};
 }
 
+inline HingeSpring::Constants sample_constants(const HingeSpring&, Random& random) {
+  return {uniform(random, 0.5, 5.0)};
+}
+
 enum class Shape { Arbitrary, NearStraight, NearFolded, Stretched };
 constexpr Shape kShapes[] = {Shape::Arbitrary, Shape::NearStraight, Shape::NearFolded,
                              Shape::Stretched};

@@ -549,8 +549,11 @@ def shuffled() -> Law:
     def write(scene: Scene) -> Scene:
         scene = copy.deepcopy(scene)
         loads, supports = len(scene.get("loads", ())), len(scene.get("supports", ()))
+        # A moment between two rods acts on the second.
+        motors = {load.get("moment", {}).get("joint") for load in scene.get("loads", ())}
         for joint in scene.get("joints", ()):
-            joint["of"] = joint["of"][::-1]
+            if joint.get("kind") != "hinge" or joint["name"] not in motors:
+                joint["of"] = joint["of"][::-1]
         for key in ("rods", "joints", "supports", "loads", "actuation"):
             if key in scene:
                 scene[key] = scene[key][::-1]

@@ -254,10 +254,12 @@ def _joined(kind: str) -> Thing:
         ankle = [{"rod": "arm", "at": "end"}, {"rod": "foot", "at": "start"}]
         turning = {"rod": "arm", "at": "start"} if kind == "hinge" else {"joint": "hip"}
         probed = {"quantity": "rotation", "joint": "ankle"}
+        sides = {"spring": {"rotational_stiffness": 0.6}, "damping": 0.02}
+        between = [{"moment": {"joint": "hip", "moment": 0.1}}] if kind == "hinge" else []
         return {
             "rods": [arm, foot],
             "joints": [
-                {"name": "hip", "of": hip, "kind": kind},
+                {"name": "hip", "of": hip, "kind": kind} | (sides if kind == "hinge" else {}),
                 {"name": "ankle", "of": ankle},
             ],
             "supports": [
@@ -271,6 +273,7 @@ def _joined(kind: str) -> Thing:
                 {"moment": {"joint": "ankle", "moment": 0.05}},
                 {"point_force": {"joint": "hip", "force": _v(model)}},
                 {"point_force": {"rod": "arm", "at": 0.21, "force": _v(model)}},
+                *between,
             ],
             "output": {
                 "probes": {
@@ -620,6 +623,10 @@ MOTIONS: dict[str, tuple[tuple[str, ...], Thing]] = {
     ),
     "damping": (ALL, lambda m: _load("damping", coefficient=1.5)),
     "internal damping": (("planar", "spatial"), _internal_damping),
+    "internal damping beside a joint": (
+        FLAT,
+        lambda m: {**_joined("rigid")(m), **_internal_damping(m)},
+    ),
     "internal damping of a material": (
         ("planar", "spatial"),
         lambda m: {

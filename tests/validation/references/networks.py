@@ -17,8 +17,9 @@ Prince; derivatives are complex steps, so that Newton's method converges to roun
 Vibrations about an equilibrium: the load of inertia m omega^2 times the displacement enters the
 derivatives alone, and a natural frequency makes them singular.
 
-A scene is read as far as it has straight rods with their stiffnesses, joints, supports (components,
-clamps, constant motions, springs), dead loads and follower forces. Nothing is shared with `der`.
+A scene is read as far as it has straight rods with their stiffnesses, joints, hinges of two rods
+with springs and moments between these, supports (components, clamps, constant motions, springs),
+dead loads and follower forces. Nothing is shared with `der`.
 """
 
 from __future__ import annotations
@@ -81,6 +82,15 @@ class _Rotation:
     moment: float = 0.0
 
 
+@dataclass
+class _Hinge:
+    """What acts between the rotations of two rods: on the second, and the opposite on the first."""
+
+    sides: tuple[int, int]
+    spring: float = 0.0
+    moment: float = 0.0
+
+
 def _pair(value: Any) -> Array:
     return np.full(2, value, dtype=float)
 
@@ -93,6 +103,7 @@ class Network:
         self.rods = {rod["name"]: rod for rod in scene["rods"]}
         self.joints: list[_Joint] = []
         self.rotations: list[_Rotation] = []
+        self.hinges: dict[str, _Hinge] = {}
         self.pieces: list[_Piece] = []
         self._joint_at: dict[Key, int] = {}
         self._rotation_at: dict[Key, int] = {}
@@ -136,6 +147,11 @@ class Network:
             if key not in self._rotation_at:
                 self._rotation_at[key] = len(self.rotations)
                 self.rotations.append(_Rotation())
+        for joint in joints:
+            if joint.get("kind") == "hinge" and len(joint["of"]) == 2:
+                first, second = (self._rotation_at[self.key(member)] for member in joint["of"])
+                spring = joint.get("spring", {}).get("rotational_stiffness", 0.0)
+                self.hinges[joint["name"]] = _Hinge((first, second), spring)
         for name, rod in self.rods.items():
             cuts = sorted(share for owner, share in keys if owner == name)
             section = rod["cross_section"]["stiffness"]
@@ -190,6 +206,8 @@ class Network:
                     joint.followers.append((self._rotation_at[key], force))
                 else:
                     joint.force += force
+            elif "joint" in load.get("moment", {}):
+                self.hinges[load["moment"]["joint"]].moment += load["moment"]["moment"]
             elif "moment" in load:
                 self._at(self.key(load["moment"]))[1].moment += load["moment"]["moment"]
             elif "distributed_force" in load:
@@ -286,6 +304,15 @@ class Network:
             else:
                 residual[row] = level * rotation.moment - rotation.spring * turns[i]
                 matrix[row, row] = -rotation.spring
+        for hinge in self.hinges.values():
+            first, second = hinge.sides
+            on_second = level * hinge.moment - hinge.spring * (turns[second] - turns[first])
+            for side, sign in ((first, -1.0), (second, 1.0)):
+                if self.rotations[side].held:
+                    continue
+                residual[2 * J + side] += sign * on_second
+                matrix[2 * J + side, 2 * J + second] -= sign * hinge.spring
+                matrix[2 * J + side, 2 * J + first] += sign * hinge.spring
         for k, piece in enumerate(self.pieces):
             a, b = piece.joints
             ra, rb = 2 * J + piece.rotations[0], 2 * J + piece.rotations[1]

@@ -61,7 +61,7 @@ using ReactionReading = double (*)(const Reaction& sum);
 using ActuationReading = double (*)(const ActuationForce& force);
 
 /// The quantity of a joint that a probe reads (output/joint_reader.hpp).
-enum class JointQuantity { None, Rotation, ForceX, ForceY, MomentZ };
+enum class JointQuantity { None, Rotation, Angle, ForceX, ForceY, MomentZ };
 
 /// One row of the table of quantities: probes, `Replay::along`, exports and views follow it.
 struct Quantity {

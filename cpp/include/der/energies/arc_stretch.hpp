@@ -64,6 +64,24 @@ struct ArcStretch {
     return c.EA / c.rest_length * response.length * response.g;
   }
 
+  /// The derivatives of the length of the arc by the length of the edge [-] and by the turning
+  /// angles [m].
+  struct ArcSlopes {
+    double length = 0.0;
+    Angles angles;
+  };
+  static ArcSlopes arc_slopes(const Constants& c, const Coordinates& x) {
+    return Response(c, 0.0, x).arc_slopes();
+  }
+  /// The gradients of the length of the arc, and of that of the edge [-].
+  static std::array<Coordinates, 2> length_gradients(const Constants& c, const Coordinates& x) {
+    const Response response(c, 0.0, x);
+    const ArcSlopes slopes = response.arc_slopes();
+    const EdgeTurns turns(response);
+    return {spread(c, response, turns, slopes.length, by_directions(slopes.angles)),
+            spread(c, response, turns, 1.0, Directions::Zero())};
+  }
+
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here, const Coordinates& x,
                        LocalTerm<kDofs>& out) {
@@ -75,37 +93,15 @@ struct ArcStretch {
     out.energy = 0.5 * per_length * (arc - length) * (extension + response.plain);
     if constexpr (D == Derivatives::Energy) return;
 
-    // By the directions: what turns one away from that before turns it towards the next.
-    const auto by_directions = [](const Angles& by_angles) {
-      Directions sum = Directions::Zero();
-      sum.template tail<kAngles>() = by_angles;
-      sum.template head<kAngles>() -= by_angles;
-      return sum;
-    };
-    const Directions slope_of_g = by_directions(response.slope_of_g);
     const Directions moments = by_directions(response.moments);
-    std::array<Vec2, Edges> turn;  // gradient of the direction of each edge [1/m]
-    std::array<double, Edges> inverse{};
-    for (int i = 0; i < Edges; ++i) {
-      inverse[std::size_t(i)] = 1.0 / response.vector(i).squaredNorm();
-      turn[std::size_t(i)] = direction_gradient(response.vector(i), inverse[std::size_t(i)]);
-    }
-    const Vec2 tangent = response.vector(c.edge) / length;
-    const auto force = [&](int i) -> Vec2 {
-      Vec2 sum = moments[kFirstEdge + i] * turn[std::size_t(i)];
-      if (i == c.edge) sum += response.tension * tangent;
-      return sum;
-    };
-    out.gradient.setZero();
-    for (int i = 0; i < Edges; ++i) {
-      const Vec2 pull = force(i);
-      out.gradient.template segment<2>(2 * i) -= pull;
-      out.gradient.template segment<2>(2 * i + 2) += pull;
-    }
-    const auto direction_of = [](int joint) { return joint == 0 ? 0 : kDirections - 1; };
-    for (int j = 0; j < Joints; ++j) out.gradient[2 * kNodes + j] = moments[direction_of(j)];
+    const EdgeTurns turns(response);
+    const auto& turn = turns.gradient;
+    const auto& inverse = turns.inverse;
+    out.gradient = spread(c, response, turns, response.tension, moments);
     if constexpr (D == Derivatives::Gradient) return;
 
+    const Vec2 tangent = response.vector(c.edge) / length;
+    const Directions slope_of_g = by_directions(response.slope_of_g);
     // By the directions, and by the length and a direction.
     Eigen::Matrix<double, kDirections, kDirections> stiffness =
         length * slope_of_g * slope_of_g.transpose();
@@ -210,7 +206,42 @@ struct ArcStretch {
       return vectors[std::size_t(kFirstEdge + edge)];
     }
     [[nodiscard]] double arc() const { return length * (1.0 - g); }
+    [[nodiscard]] ArcSlopes arc_slopes() const { return {1.0 - g, -length * slope_of_g}; }
   };
+
+  /// How the vector of each edge turns its direction.
+  struct EdgeTurns {
+    std::array<Vec2, Edges> gradient;     ///< [1/m]
+    std::array<double, Edges> inverse{};  ///< of its squared length [1/m^2]
+    explicit EdgeTurns(const Response& response) {
+      for (int i = 0; i < Edges; ++i) {
+        inverse[std::size_t(i)] = 1.0 / response.vector(i).squaredNorm();
+        gradient[std::size_t(i)] = direction_gradient(response.vector(i), inverse[std::size_t(i)]);
+      }
+    }
+  };
+  static constexpr int direction_of(int joint) { return joint == 0 ? 0 : kDirections - 1; }
+  /// By the directions: what turns one away from that before turns it towards the next.
+  static Directions by_directions(const Angles& by_angles) {
+    Directions sum = Directions::Zero();
+    sum.template tail<kAngles>() = by_angles;
+    sum.template head<kAngles>() -= by_angles;
+    return sum;
+  }
+  /// The derivatives by the coordinates of what has these by the length of the edge and by the
+  /// directions.
+  static Coordinates spread(const Constants& c, const Response& response, const EdgeTurns& turns,
+                            double by_length, const Directions& turning) {
+    Coordinates result = Coordinates::Zero();
+    for (int i = 0; i < Edges; ++i) {
+      Vec2 pull = turning[kFirstEdge + i] * turns.gradient[std::size_t(i)];
+      if (i == c.edge) pull += by_length / response.length * response.vector(i);
+      result.template segment<2>(2 * i) -= pull;
+      result.template segment<2>(2 * i + 2) += pull;
+    }
+    for (int j = 0; j < Joints; ++j) result[2 * kNodes + j] = turning[direction_of(j)];
+    return result;
+  }
 };
 
 template <class Kernel>

@@ -11,7 +11,8 @@ namespace der {
 
 /// The internal damping of an element: the rates of its strains, those of StrainRate, bear the
 /// loads `viscosity` times these, [N s/m] of an extension, [N m s] of curvatures and twist over its
-/// cell. Of one strain the first entry counts. It is symmetric, with no negative eigenvalue.
+/// cell. Of one strain the first entry counts. It is symmetric, with no negative eigenvalue but
+/// that of an arc (ArcStretch), which takes out a part of another element.
 struct DampedElement {
   std::size_t element = 0;  ///< its number in the list
   Mat3 viscosity = Mat3::Zero();

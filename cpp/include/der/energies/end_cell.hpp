@@ -62,6 +62,15 @@ struct EndCell {
   static Angles loads(const Constants& c, const Angles& natural, const Coordinates& x) {
     return Response(c, natural, x).load;
   }
+  /// The derivatives of each kappa by its turning angle.
+  static Angles measure_slopes(const Constants& c, const Coordinates& x) {
+    return Response(c, c.rest, x).slope;
+  }
+  /// The gradients of kappa, a row for each angle.
+  static Eigen::Matrix<double, kAngles, kDofs> gradients(const Constants& c, const Coordinates& x) {
+    const Response response(c, c.rest, x);
+    return response.slope.asDiagonal() * by_angles(direction_gradients(response)).transpose();
+  }
 
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here, const Coordinates& x,
@@ -76,30 +85,17 @@ struct EndCell {
       by_direction[i] =
           (i > 0 ? response.moment[i - 1] : 0.0) - (i < kAngles ? response.moment[i] : 0.0);
     }
-    // Derivatives of all directions by the coordinates, a column for each.
-    Eigen::Matrix<double, kDofs, kDirections> slopes;
-    slopes.setZero();
-    std::array<double, Edges> inverse{};
-    slopes(2 * kNodes, 0) = 1.0;
-    if constexpr (Joints == 2) slopes(2 * kNodes + 1, kDirections - 1) = 1.0;
-    for (int i = 0; i < Edges; ++i) {
-      const Vec2& edge = response.vectors[std::size_t(i) + 1];
-      inverse[std::size_t(i)] = 1.0 / edge.squaredNorm();
-      const Vec2 slope = direction_gradient(edge, inverse[std::size_t(i)]);
-      slopes.template block<2, 1>(2 * i, i + 1) = -slope;
-      slopes.template block<2, 1>(2 * i + 2, i + 1) = slope;
-    }
+    const DirectionGradients slopes = direction_gradients(response);
     out.gradient.noalias() = slopes * by_direction;
     if constexpr (D == Derivatives::Gradient) return;
 
-    const Eigen::Matrix<double, kDofs, kAngles> by_angles =
-        slopes.template rightCols<kAngles>() - slopes.template leftCols<kAngles>();
-    out.hessian.noalias() = by_angles * response.stiffness * by_angles.transpose();
+    const auto turning = by_angles(slopes);
+    out.hessian.noalias() = turning * response.stiffness * turning.transpose();
     for (int i = 0; i < Edges; ++i) {
       const Mat2 h = by_direction[i + 1] *
                      direction_hessian(response.vectors[std::size_t(i) + 1],
                                        Vec2(slopes.template block<2, 1>(2 * i + 2, i + 1)),
-                                       inverse[std::size_t(i)]);
+                                       response.inverse_squared(i));
       out.hessian.template block<2, 2>(2 * i, 2 * i) += h;
       out.hessian.template block<2, 2>(2 * i, 2 * i + 2) -= h;
       out.hessian.template block<2, 2>(2 * i + 2, 2 * i) -= h;
@@ -112,7 +108,8 @@ struct EndCell {
   struct Response {
     std::array<Vec2, kDirections> vectors;  ///< whose directions count; unit vectors of joints
     double energy = 0.0;
-    Angles load;  ///< by kappa
+    Angles slope;  ///< of kappa by the turning angle
+    Angles load;   ///< by kappa
     Angles moment;
     Stiffness stiffness;
 
@@ -128,22 +125,44 @@ struct EndCell {
       }
       if constexpr (Joints == 2) vectors.back() = tangent(1);
       Angles excess;
-      Angles first;
       Angles second;
       for (int i = 0; i < kAngles; ++i) {
         const CurvatureValue k =
             Curvature::of(angle_between(vectors[std::size_t(i)], vectors[std::size_t(i) + 1]));
         excess[i] = k.kappa - natural[i];
-        first[i] = k.first;
+        slope[i] = k.first;
         second[i] = k.second;
       }
       load = c.stiffness * excess;
       energy = 0.5 * excess.dot(load);
-      moment = first.cwiseProduct(load);
-      stiffness = first.asDiagonal() * c.stiffness * first.asDiagonal();
+      moment = slope.cwiseProduct(load);
+      stiffness = slope.asDiagonal() * c.stiffness * slope.asDiagonal();
       stiffness.diagonal() += load.cwiseProduct(second);
     }
+    /// Of the length of an edge [1/m^2].
+    [[nodiscard]] double inverse_squared(int edge) const {
+      return 1.0 / vectors[std::size_t(edge) + 1].squaredNorm();
+    }
   };
+
+  using DirectionGradients = Eigen::Matrix<double, kDofs, kDirections>;
+  /// Derivatives of all directions by the coordinates, a column for each.
+  static DirectionGradients direction_gradients(const Response& response) {
+    DirectionGradients slopes = DirectionGradients::Zero();
+    slopes(2 * kNodes, 0) = 1.0;
+    if constexpr (Joints == 2) slopes(2 * kNodes + 1, kDirections - 1) = 1.0;
+    for (int i = 0; i < Edges; ++i) {
+      const Vec2 slope =
+          direction_gradient(response.vectors[std::size_t(i) + 1], response.inverse_squared(i));
+      slopes.template block<2, 1>(2 * i, i + 1) = -slope;
+      slopes.template block<2, 1>(2 * i + 2, i + 1) = slope;
+    }
+    return slopes;
+  }
+  /// The same of the turning angles.
+  static Eigen::Matrix<double, kDofs, kAngles> by_angles(const DirectionGradients& slopes) {
+    return slopes.template rightCols<kAngles>() - slopes.template leftCols<kAngles>();
+  }
 };
 
 }  // namespace der

@@ -11,6 +11,7 @@
 #include "der/energies/fork.hpp"
 #include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
+#include "der/energies/hinge_spring.hpp"
 #include "der/energies/isotropic_bend.hpp"
 #include "der/energies/joint_spring.hpp"
 #include "der/energies/planar_bend.hpp"
@@ -44,6 +45,7 @@ struct ElementLists {
       ElementList<ArcStretch<1, 1>>, ElementList<ArcStretch<1, 2>>, ElementList<ArcStretch<2, 0>>,
       ElementList<ArcStretch<2, 1>>, ElementList<ArcStretch<2, 2>>, ElementList<ArcStretch<3, 0>>,
       ElementList<ArcStretch<3, 1>>, ElementList<ArcStretch<3, 2>>, ElementList<JointSpring>,
+      ElementList<HingeSpring>,                                         //
       ElementList<Stretch<3>>,                                          //
       ElementList<FromSpatialPivot<Stretch<3>>>,                        //
       ElementList<IsotropicBend<AngleCurvature>>,                       //

@@ -3,8 +3,11 @@
 #include <type_traits>
 
 #include "der/core/types.hpp"
+#include "der/energies/arc_stretch.hpp"
 #include "der/energies/damping_times.hpp"
+#include "der/energies/end_cell.hpp"
 #include "der/energies/from_pivot.hpp"
+#include "der/energies/hinge_spring.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
 #include "der/energies/spatial_bend.hpp"
@@ -115,6 +118,57 @@ struct StrainRate<PlanarClamp<Curvature>> : StrainRateBase<PlanarClamp<Curvature
   /// Derivative of the curvature by the direction of the edge.
   static double slope(const typename Base::Constants& c, const Configuration& here, const Vec2& e) {
     return c.side * Curvature::of(Kernel::turning_angle(c, here.controls, e)).first;
+  }
+};
+
+template <class Curvature, int Edges, int Joints>
+struct StrainRate<EndCell<Curvature, Edges, Joints>>
+    : StrainRateBase<EndCell<Curvature, Edges, Joints>, Edges + Joints - 1> {
+  using Kernel = EndCell<Curvature, Edges, Joints>;
+  using Base = StrainRateBase<Kernel, Kernel::kAngles>;
+  static Mat3 viscosity(const typename Base::Constants& c, const DampingTimes& times) {
+    Mat3 result = Mat3::Zero();
+    result.topLeftCorner<Base::kSize, Base::kSize>() = times.bending * c.stiffness;
+    return result;
+  }
+  static typename Base::Gradient gradient(const typename Base::Constants& c,
+                                          const Configuration& /*here*/,
+                                          const typename Base::Local& x) {
+    return Kernel::gradients(c, x);
+  }
+};
+
+/// The rate is that of the angle between the sides; the damping is not that of a material.
+template <>
+struct StrainRate<HingeSpring> : StrainRateBase<HingeSpring, 1> {
+  static Mat3 viscosity(const HingeSpring::Constants& c, const DampingTimes& times) {
+    return single(times.bending * c.stiffness);
+  }
+  static Gradient gradient(const HingeSpring::Constants& /*c*/, const Configuration& /*here*/,
+                           const Local& /*x*/) {
+    return {-1.0, 1.0};
+  }
+  /// Of a hinge with this damping [N m s].
+  static Mat3 of_hinge(double damping) { return single(damping); }
+};
+
+/// The strains are the extension of the arc and, with a negative viscosity, that of the edge, whose
+/// part Stretch has.
+template <int Edges, int Joints>
+struct StrainRate<ArcStretch<Edges, Joints>> : StrainRateBase<ArcStretch<Edges, Joints>, 2> {
+  using Kernel = ArcStretch<Edges, Joints>;
+  using Base = StrainRateBase<Kernel, 2>;
+  static Mat3 viscosity(const typename Base::Constants& c, const DampingTimes& times) {
+    const double viscosity = times.stretching * c.EA / c.rest_length;
+    return Vec3(viscosity, -viscosity, 0.0).asDiagonal();
+  }
+  static typename Base::Gradient gradient(const typename Base::Constants& c,
+                                          const Configuration& /*here*/,
+                                          const typename Base::Local& x) {
+    const auto [of_arc, of_edge] = Kernel::length_gradients(c, x);
+    typename Base::Gradient result;
+    result << of_arc.transpose(), of_edge.transpose();
+    return result;
   }
 };
 

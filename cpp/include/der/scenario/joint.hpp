@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,21 @@ struct JointMember {
   Location at;
 };
 
+/// What acts between the two sides of a hinge.
+struct HingeSpring {
+  double rotational_stiffness = 0.0;  ///< [N m/rad]
+};
+
 /// Joins rods at a point: at their ends or inside.
 struct Joint {
   std::string name;
   std::vector<JointMember> of;  ///< two or more
   JointKind kind = JointKind::Rigid;
+  std::optional<HingeSpring> spring;  ///< of a hinge of two rods, as is the damping
+  double damping = 0.0;               ///< moment per rate of the angle [N m s/rad]
   Mark mark;
+
+  [[nodiscard]] bool has_sides() const { return spring || damping > 0.0; }
 };
 
 }  // namespace der::scenario

@@ -29,6 +29,12 @@ class ExplicitForce {
   /// Adds to an acceleration [m/s^2] at `state` what the gyroscopic forces make of a change of the
   /// velocities of nodes [m/s].
   void add_gyroscopic_change(const State& state, const Vector& change, Vector& acceleration);
+  /// Moves the rotations of `positions` to a time `dt` [s] from that of `state`, where nodes have
+  /// the positions and `velocities`.
+  void advance_rotations(const State& state, double dt, const Vector& velocities,
+                         Vector& positions);
+  /// Sets the rates of rotations that lag behind at `state`.
+  void set_rotation_rates(const State& state, Vector& velocities);
   /// Evaluates at `time` what `accumulate` needs, which is less than the acceleration does.
   void evaluate_works(const State& state, const Vector& positions, const Vector& velocities,
                       double time);
@@ -53,13 +59,15 @@ class ExplicitForce {
   bool supports_move_;
   MassSolver mass_;
   JointRotations rotations_;
-  Configuration here_;  // of the last evaluation
+  JointRotations settled_;  // those that do not lag behind
+  Configuration here_;      // of the last evaluation
   Vector scratch_controls_;
   Vector force_;
   Vector gradient_;  // without what the transport of frames makes of torques
   Vector viscous_;   // forces of internal damping
   Vector turn_rates_;
   Vector mean_velocities_;
+  Vector rates_;   // velocities with those of rotations that lag behind
   Vector couple_;  // gyroscopic forces on nodes
   Vector next_couple_;
 };

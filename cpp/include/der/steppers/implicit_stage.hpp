@@ -25,7 +25,8 @@ class ImplicitStage {
 
   ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
                 const NewtonOptions& options,
-                StepCommit::HeldVelocities held = StepCommit::HeldVelocities::OfMotion);
+                StepCommit::HeldVelocities held = StepCommit::HeldVelocities::OfMotion,
+                StepCommit::LaggingRotations lagging = StepCommit::LaggingRotations::OfCommit);
 
   /// Inertia and velocity terms, to be set by the stepper before `solve`; displacements are those
   /// from the start of the step.

@@ -17,7 +17,11 @@ class StepCommit {
   /// differences of velocities over an edge, in which the error of the scheme cancels only if both
   /// ends have it.
   enum class HeldVelocities { OfMotion, OfScheme };
-  explicit StepCommit(const Model& model, HeldVelocities held = HeldVelocities::OfMotion);
+  /// Who moves the rotations that lag behind by internal damping: this, or the scheme, as it does
+  /// nodes, if it is L-stable and keeps its order for them.
+  enum class LaggingRotations { OfCommit, OfScheme };
+  explicit StepCommit(const Model& model, HeldVelocities held = HeldVelocities::OfMotion,
+                      LaggingRotations lagging = LaggingRotations::OfCommit);
   [[nodiscard]] HeldVelocities held_velocities() const { return held_velocities_; }
 
   /// Moves `state`, still at the start of a step of `dt` [s], to its end, where free degrees of
@@ -30,14 +34,17 @@ class StepCommit {
 
  private:
   ControlWork follow_and_work(State& state);
-  void settle_rotations(double dt, State& state);
+  void move_rotations(double dt, State& state);
   double driven_power(const Configuration& here, const State& state, double dt, double time);
 
   const Model& model_;
   HeldVelocities held_velocities_;
   JointRotations rotations_;
+  JointRotations lagging_;
+  bool advances_rotations_ = false;
   bool controls_work_ = false;  // whether any control does work without a displacement
   Configuration start_;
+  Vector start_velocities_;  // where rotations lag behind
   Configuration end_;
   Configuration ahead_;   // the start with the controls of the end
   Configuration behind_;  // the end with the controls of the start

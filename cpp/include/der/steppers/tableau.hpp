@@ -27,6 +27,9 @@ struct Tableau {
   [[nodiscard]] double time(Index stage) const;
   /// Whether the last stage is the result.
   [[nodiscard]] bool stiffly_accurate() const;
+  /// Whether it damps all that is fast for the step, as each is A-stable: what the step makes of a
+  /// y' = c y vanishes as c grows.
+  [[nodiscard]] bool is_l_stable() const;
 };
 
 /// Order 1, L-stable.

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "der/model/model.hpp"
+#include "der/scenario/joint.hpp"
+
+namespace der {
+
+/// Adds the spring and the damping of a joint whose rotations are found; does nothing if it has
+/// none.
+void add_hinge(const scenario::Joint& joint, Model& model);
+
+}  // namespace der

@@ -3,8 +3,9 @@
     python docs/make_figures.py [NAME...]
 
 Writes docs/images/NAME.png for each NAME, or for all of them. finger_learned, finger_traces,
-gripper and swinging are GIFs. What has been learned takes gymnasium, and view and notebook, two
-screenshots, take Chromium and selenium: without them these pictures are left as they are.
+gripper and swinging are GIFs. What has been learned takes gymnasium, and view, play and
+notebook, three screenshots, take Chromium and selenium, and play takes viser: without them these
+pictures are left as they are.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ from __future__ import annotations
 import argparse
 import shutil
 import subprocess
+import sys
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +27,7 @@ from der.plotting import PALETTE, style, time_colours
 from der.plotting.space import make_picture
 from der.plotting.style import MUTED, look
 from matplotlib.patheffects import withStroke
+from screenshots import chromium
 from tutorials import beam_study, control, falling_rod, finger, fitting
 
 if TYPE_CHECKING:
@@ -632,6 +636,38 @@ def view(path: Path) -> None:
             browser.quit()
 
 
+def play(path: Path) -> None:
+    """Write a screenshot of a scene that is played, while the mouse pulls."""
+    import viser  # noqa: F401 - without it the picture is left as it is
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    command = [sys.executable, "-m", "der", "play", "example:finger", "--port", "8961"]
+    with (
+        chromium() as browser,
+        subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as player,
+    ):
+        try:
+            assert player.stdout is not None
+            browser.set_window_size(1280, 760)
+            browser.get(player.stdout.readline().split()[0])
+            wait = WebDriverWait(browser, 180)
+            wait.until(lambda b: "moment_clamp" in b.find_element("css selector", "body").text)
+            time.sleep(5.0)  # it has closed and opened by then
+            canvas = browser.find_element("css selector", "canvas")
+            height = canvas.rect["height"]
+            hand = ActionChains(browser)
+            hand.move_to_element_with_offset(canvas, round(0.25 * height), round(0.07 * height))
+            hand.click_and_hold().move_by_offset(0, -20).move_by_offset(0, -round(0.35 * height))
+            hand.perform()
+            time.sleep(3.0)
+            notice = "[...document.querySelectorAll('.mantine-Notification-root')]"
+            browser.execute_script(f"{notice}.forEach((one) => one.remove())")  # of a slow browser
+            browser.save_screenshot(str(path))
+        finally:
+            player.terminate()
+
+
 def notebook(path: Path) -> None:
     """Write a screenshot of a result as a notebook shows it."""
     chromium = shutil.which("chromium")
@@ -694,6 +730,7 @@ FILES: dict[str, tuple[str, Callable[[Path], None]]] = {
     "swinging": (".gif", swinging),
     "view": (".png", view),
     "notebook": (".png", notebook),
+    "play": (".png", play),
 }
 
 

@@ -67,6 +67,7 @@ from der.errors import (
 )
 from der.examples import examples
 from der.exporting import export
+from der.playing import play
 from der.probe_series import ProbeSeries
 from der.reactions import Reaction
 from der.recording import Recording
@@ -130,6 +131,7 @@ __all__ = [
     "load_sweep",
     "loops",
     "open_run",
+    "play",
     "plot",
     "quantities",
     "run",

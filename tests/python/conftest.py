@@ -1,8 +1,10 @@
 import copy
+import shutil
 from typing import Any
 
 import matplotlib as mpl
 import pytest
+from browsers import FLAGS, missing
 
 mpl.use("agg")
 
@@ -137,3 +139,24 @@ def unstable(spheres: dict[str, Any]) -> dict[str, Any]:
         "allow_unstable": True,
     }
     return spheres
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    """A headless Chromium; without one the test is skipped, or fails where it is required."""
+    try:
+        from selenium import webdriver
+    except ModuleNotFoundError:
+        return missing("selenium (pip install selenium)")
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    driver = shutil.which("chromedriver")
+    if not chromium or not driver:
+        return missing("Chromium (Debian packages chromium and chromium-driver)")
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    window = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
+    yield window
+    window.quit()

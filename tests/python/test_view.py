@@ -3,9 +3,7 @@
 import base64
 import io
 import json
-import os
 import re
-import shutil
 import subprocess
 import sys
 import time
@@ -14,24 +12,10 @@ from dataclasses import replace
 import der
 import numpy as np
 import pytest
+from browsers import REQUIRED, assert_no_errors, wait_for
 from der.fields import fields_of, rod_fields
 from der.viewing.payload import make_payload
 from PIL import Image
-
-REQUIRED = os.environ.get("DER_REQUIRE_BROWSER") == "1"
-# Without a screen and a graphics processor; nothing reaches out to the network.
-FLAGS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--enable-unsafe-swiftshader",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--window-size=1000,700",
-)
 
 if not REQUIRED:
     pytest.importorskip("plotly")
@@ -298,46 +282,6 @@ def test_open_shows_it_in_a_browser(swing, tmp_path, monkeypatch):
     assert shown == [page.as_uri()]
 
 
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    """A headless Chromium; without one the test is skipped, or fails where it is required."""
-    try:
-        from selenium import webdriver
-    except ModuleNotFoundError:
-        return missing("selenium (pip install selenium)")
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    driver = shutil.which("chromedriver")
-    if not chromium or not driver:
-        return missing("Chromium (Debian packages chromium and chromium-driver)")
-    options = webdriver.ChromeOptions()
-    options.binary_location = chromium
-    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    window = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
-    yield window
-    window.quit()
-
-
-def missing(what):
-    message = f"the view was not tried in a browser: no {what}"
-    if REQUIRED:
-        pytest.fail(message)
-    pytest.skip(message)
-
-
-def wait_for(browser, script, seconds=60):
-    """Wait until a script returns something true, and return that."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        found = browser.execute_script(f"return {script}")
-        if found:
-            return found
-        time.sleep(0.05)
-    pytest.fail(f"in vain: {script}; console: {browser.get_log('browser')}")
-    return None
-
-
 def open_page(browser, page):
     browser.get(page.as_uri())
     wait_for(browser, "document.body.classList.contains('ready')")
@@ -367,11 +311,6 @@ def drawn_line(browser, rods=1):
         "const t = document.getElementById('scene').data[0]; return [t.x, t.y, t.z, t.line.color]"
     )
     return np.array([list(values)[: -rods or None] for values in line], dtype=float)
-
-
-def assert_no_errors(browser):
-    severe = [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
-    assert severe == []
 
 
 def test_browser_draws_the_run(browser, swing, tmp_path):

@@ -130,6 +130,9 @@ constexpr int kTooManyNodes = 100'000;
 /// minute. All others found the right shape.
 constexpr int kManyNodes = 20'000;
 
+/// Of all rods of a scene together: a run takes 0.6 GB and a search 1.5 GB, or more.
+constexpr double kManyInScene = 500'000;
+
 /// Memory that is taken for each node at least [bytes].
 struct NodeMemory {
   double in_plane;
@@ -137,6 +140,31 @@ struct NodeMemory {
 };
 constexpr NodeMemory kOfRun{1200.0, 2000.0};     // over time
 constexpr NodeMemory kOfSearch{3000.0, 6000.0};  // of an equilibrium
+
+/// "20000 nodes take 0.06 GB of memory or more"
+std::string takes_memory(double nodes, bool is_searched, int dimension) {
+  const NodeMemory& of_node = is_searched ? kOfSearch : kOfRun;
+  const double memory = nodes * (dimension == 2 ? of_node.in_plane : of_node.in_space);
+  return fmt::format("{:.0f} nodes take {:.2g} GB of memory or more", nodes, 1e-9 * memory);
+}
+
+/// Whether an equilibrium is searched for.
+bool searches(const SceneText& scene) {
+  return !scene.is_dynamic() || scene.start_from == "equilibrium";
+}
+
+/// Warns of a scene whose rods have too many nodes together, each of them no matter how few.
+void check_size(CheckContext& context) {
+  double nodes = 0.0;
+  for (const auto& line : context.lines) nodes += line ? line->num_nodes() : 0;
+  if (nodes < kManyInScene) return;
+  const bool is_searched = searches(context.scene);
+  context.scene.warnings.push_back(fmt::format(
+      "the scene is large: its {} rods of {}{}: write fewer, 200 a rod resolve most shapes and "
+      "2000 nearly all",
+      context.lines.size(), takes_memory(nodes, is_searched, context.dimension),
+      is_searched ? ". The search can take many minutes" : ""));
+}
 
 /// Whether a load bends a straight rod: it has a part across it, or may have one.
 struct Bends {
@@ -190,16 +218,12 @@ class Resolution {
   /// Reports so many nodes that no equilibrium, mode or buckling load of a rod that bends can be
   /// found, and warns of them in a run over time. Warns of fewer that may be too many.
   void check_fineness() {
-    const bool is_searched =
-        !context_.scene.is_dynamic() || context_.scene.start_from == "equilibrium";
+    const bool is_searched = searches(context_.scene);
     if (line_.num_nodes() < (is_searched ? kManyNodes : kTooManyNodes)) return;
     if (is_cable(rod_) || is_only_pulled()) return;
-    const NodeMemory& of_node = is_searched ? kOfSearch : kOfRun;
-    const double memory =
-        line_.num_nodes() * (context_.dimension == 2 ? of_node.in_plane : of_node.in_space);
-    const std::string takes = fmt::format(
-        "{} nodes take {:.2g} GB of memory or more, and rounding hides how a rod of so many bends",
-        line_.num_nodes(), 1e-9 * memory);
+    const std::string takes =
+        fmt::format("{}, and rounding hides how a rod of so many bends",
+                    takes_memory(line_.num_nodes(), is_searched, context_.dimension));
     constexpr const char* kAdvice = "write fewer, 200 resolve most shapes and 2000 nearly all";
     if (!is_searched) {
       context_.scene.warnings.push_back(
@@ -308,6 +332,7 @@ void check_resolution(CheckContext& context) {
     resolution.check_curvature();
     resolution.check_twist();
   }
+  if (context.lines.size() > 1) check_size(context);
 }
 
 }  // namespace der::scenario

@@ -92,7 +92,7 @@ RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& a
   // An equilibrium that was not found leaves nothing to record.
   if (recorder.has_data()) recorder.finish(simulation);
   outcome.crossing = recorder.crossing();
-  outcome.stretched = recorder.stretched();
+  outcome.strained = recorder.strained();
   outcome.time = simulation.state().time;
   outcome.counters = recorder.counters(simulation);
   outcome.wall_seconds = recorder.wall_seconds();

@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -27,20 +27,48 @@ constexpr double kHeaviest = 3e4;  // [kg/m^3]
 constexpr double kFoam = 25.0;         // [kg/m^3]
 constexpr double kStiffestFoam = 1e5;  // [Pa] at 1 kg/m^3
 
-/// A metal or a stone, in whose modulus [Pa] so small a number counts GPa.
-constexpr double kHeavy = 2e3;  // [kg/m^3]
-constexpr double kFewGPa = 2e3;
+/// Elastomers have 10 kPa and more, diamond 1.2 TPa. Softer solids there are, but few would count
+/// their modulus in MPa or GPa.
+constexpr double kLikelySoft = 1e4;      // [Pa]
+constexpr double kLikelyStiff = 1.3e12;  // [Pa]
+/// From a light foam to osmium.
+constexpr double kLikelyLight = 25.0;  // [kg/m^3]
 
 /// Metals, stones and glass, in which sound goes along a bar at 1200 (lead) to 13000 m/s
 /// (beryllium). Elastomers become as heavy by a third of metal powder, which makes them three times
 /// as stiff: 6 m/s and more.
 constexpr double kStone = 2500.0;   // [kg/m^3]
 constexpr double kSlowest = 6.0;    // [m/s]
-constexpr double kSlowInMPa = 0.5;  // [m/s] slower ones are in GPa
+constexpr double kSlowSolid = 1e3;  // [m/s] none of them is slower
 
 /// Strain that the loads cause if each pulls along its rod with all of its force. It is 1 where
 /// the linear law has no meaning; supports, buoyancy and foundations may well bear nine tenths.
 constexpr double kStrain = 10.0;
+
+struct OtherUnit {
+  const char* name;
+  double factor;
+};
+
+/// "Is it in MPa? 'youngs_modulus' then is 1e+06", with the first unit in which the number is a
+/// likely one; else where to look.
+template <class IsLikely>
+std::string likely_unit(const char* what, const char* key, const char* si, double value,
+                        std::initializer_list<OtherUnit> units, IsLikely&& is_likely) {
+  for (const OtherUnit& unit : units) {
+    if (!is_likely(unit.factor * value)) continue;
+    return fmt::format("Is {} in {}? '{}' then is {:.6g}", what, unit.name, key,
+                       unit.factor * value);
+  }
+  return fmt::format("No unit makes '{}' a likely number: it is read in {}", key, si);
+}
+
+bool is_likely_modulus(double modulus, double density) {
+  if (modulus < kLikelySoft || modulus > kLikelyStiff) return false;
+  return density < kStone || std::sqrt(modulus / density) >= kSlowSolid;
+}
+
+bool is_likely_density(double density) { return density >= kLikelyLight && density <= kHeaviest; }
 
 struct Size {
   const char* key;
@@ -81,6 +109,28 @@ double area_of(const CrossSection& section) {
   return std::visit(Visitor{}, section);
 }
 
+/// The smaller second moment of area [m^4].
+double inertia_of(const CrossSection& section) {
+  struct Visitor {
+    double operator()(const Circle& circle) const {
+      return 0.25 * kPi * std::pow(circle.radius, 4);
+    }
+    double operator()(const Tube& tube) const {
+      return 0.25 * kPi * (std::pow(tube.outer_radius, 4) - std::pow(tube.inner_radius, 4));
+    }
+    double operator()(const Rectangle& sides) const {
+      const auto [least, other] = std::minmax(sides.width, sides.height);
+      return std::pow(least, 3) * other / 12.0;
+    }
+    double operator()(const Ellipse& axes) const {
+      const auto [least, other] = std::minmax(axes.width, axes.height);
+      return kPi * std::pow(least, 3) * other / 64.0;
+    }
+    double operator()(const Stiffness& /*direct*/) const { return 0.0; }
+  };
+  return std::visit(Visitor{}, section);
+}
+
 double largest_of(const VectorSeries& series) {
   double largest = 0.0;
   for (const Components& value : series.values) {
@@ -91,17 +141,23 @@ double largest_of(const VectorSeries& series) {
   return largest;
 }
 
-/// What pulls on the rods of a scene: gravity [m/s^2], and by the name of a rod the sum of forces
-/// [N]. A foundation bears what it may.
+/// What loads the rods of a scene: gravity [m/s^2], and by the name of a rod the sums of forces [N]
+/// and of moments. A foundation bears what it may.
 struct Pull {
   double gravity = 0.0;
   std::unordered_map<std::string, double> forces{};
+  std::unordered_map<std::string, double> moments{};  ///< [N m]
   std::unordered_set<std::string> borne{};
 
   void operator()(const Gravity& load) { gravity += largest_of(load.acceleration); }
   void operator()(const PointForce& load) { forces[load.rod] += largest_of(load.force); }
   void operator()(const DistributedForce& load) {
     forces[load.rod] += largest_of(load.force) * (load.to - load.from);
+  }
+  void operator()(const Moment& load) {
+    double largest = largest_of(load.moment_vector);
+    for (const double value : load.moment.values) largest = std::max(largest, std::abs(value));
+    moments[load.rod] += largest;
   }
   void operator()(const Foundation& load) { borne.insert(load.rod); }
   template <class Other>
@@ -116,18 +172,23 @@ class Units {
   [[nodiscard]] std::string problem(const Rod& rod, double length) const {
     const Size size = largest_size(rod.cross_section);
     if (size.thickness > length) {
-      return fmt::format(
-          "is thicker ({:.4g} m) than long ({:.4g} m). Is its cross-section in mm? '{}' then is "
-          "{:.6g}",
-          size.thickness, length, size.key, 1e-3 * size.value);
+      const auto is_thin = [&](double value) {
+        return value * size.thickness < length * size.value;
+      };
+      return fmt::format("is thicker ({:.4g} m) than long ({:.4g} m). {}", size.thickness, length,
+                         likely_unit("its cross-section", size.key, "m", size.value,
+                                     {{"mm", 1e-3}, {"um", 1e-6}}, is_thin));
     }
     if (!rod.material) return {};
     const Material& material = *rod.material;
+    const auto is_modulus = [&](double value) {
+      return is_likely_modulus(value, material.density);
+    };
     if (material.youngs_modulus < kSoftest) {
-      return fmt::format(
-          "is softer than any solid: its modulus is {:g} Pa. Is it in MPa? 'youngs_modulus' then "
-          "is {:g}",
-          material.youngs_modulus, 1e6 * material.youngs_modulus);
+      return fmt::format("is softer than any solid: its modulus is {:g} Pa. {}",
+                         material.youngs_modulus,
+                         likely_unit("it", "youngs_modulus", "Pa", material.youngs_modulus,
+                                     {{"MPa", 1e6}, {"GPa", 1e9}}, is_modulus));
     }
     if (std::string density = density_problem(material); !density.empty()) return density;
     if (std::string strain = strain_problem(rod, length); !strain.empty()) return strain;
@@ -144,15 +205,16 @@ class Units {
         density < kFoam && material.youngs_modulus > kStiffestFoam * density * density;
     if (density < kLightest || too_stiff) {
       return fmt::format(
-          "is lighter than any solid{}: its density is {:g} kg/m^3. Is it in g/cm^3? 'density' "
-          "then is {:g}",
-          density < kLightest ? "" : " of its stiffness", density, 1e3 * density);
+          "is lighter than any solid{}: its density is {:g} kg/m^3. {}",
+          density < kLightest ? "" : " of its stiffness", density,
+          likely_unit("it", "density", "kg/m^3", density,
+                      {{"g/cm^3", 1e3}, {"kg/cm^3", 1e6}, {"kg/mm^3", 1e9}, {"t/mm^3", 1e12}},
+                      is_likely_density));
     }
     if (density <= kHeaviest) return {};
     return fmt::format(
-        "is heavier than any solid: its density is {:g} kg/m^3. Is it in g/m^3? 'density' then is "
-        "{:g}",
-        density, 1e-3 * density);
+        "is heavier than any solid: its density is {:g} kg/m^3. {}", density,
+        likely_unit("it", "density", "kg/m^3", density, {{"g/m^3", 1e-3}}, is_likely_density));
   }
 
   [[nodiscard]] std::string strain_problem(const Rod& rod, double length) const {
@@ -161,23 +223,30 @@ class Units {
     const auto found = pull_.forces.find(rod.name);
     const double force = found == pull_.forces.end() ? 0.0 : found->second;
     const double weight = material.density * pull_.gravity * length / material.youngs_modulus;
-    const double strain = weight + force / (material.youngs_modulus * area_of(rod.cross_section));
+    const double pulled = weight + force / (material.youngs_modulus * area_of(rod.cross_section));
+    const double bent = strain_of_moments(rod);
+    const double strain = std::max(pulled, bent);
     if (!(strain > kStrain)) return {};
-    struct Unit {
-      const char* name;
-      double factor;
-    };
-    static constexpr std::array<Unit, 3> units{{{"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}};
     constexpr double sound = 0.1;  // a strain that is not absurd
-    const bool is_metal = material.density > kHeavy && material.youngs_modulus < kFewGPa;
-    const auto* unit = std::find_if(units.begin(), units.end() - 1, [&](const Unit& candidate) {
-      return !is_metal && strain < sound * candidate.factor;
-    });
+    const auto is_modulus = [&](double value) {
+      return is_likely_modulus(value, material.density) &&
+             strain * material.youngs_modulus < sound * value;
+    };
     return fmt::format(
-        "would be strained by {:.2g} if its loads pulled along it, where no material is linear "
-        "beyond 1. Is its modulus in {}? 'youngs_modulus' then is {:g}. Else look at the units of "
-        "its lengths (m) and loads (N)",
-        strain, unit->name, unit->factor * material.youngs_modulus);
+        "would be strained by {:.2g} if its {}, where no material is linear beyond 1. {}. Or "
+        "look at the units of its lengths (m) and loads (N, N m)",
+        strain, pulled >= bent ? "loads pulled along it" : "moments bent it",
+        likely_unit("its modulus", "youngs_modulus", "Pa", material.youngs_modulus,
+                    {{"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}, is_modulus));
+  }
+
+  /// M r / EI, r half the height.
+  [[nodiscard]] double strain_of_moments(const Rod& rod) const {
+    const auto found = pull_.moments.find(rod.name);
+    const double inertia = inertia_of(rod.cross_section);
+    if (found == pull_.moments.end() || inertia == 0.0) return 0.0;
+    const double half = 0.5 * largest_size(rod.cross_section).thickness;
+    return found->second * half / (rod.material->youngs_modulus * inertia);
   }
 
   /// A gel is as soft and a metal is as heavy, and nothing is both.
@@ -185,12 +254,15 @@ class Units {
     if (material.density < kStone) return {};
     const double speed = std::sqrt(material.youngs_modulus / material.density);
     if (speed >= kSlowest) return {};
-    const bool in_MPa = speed >= kSlowInMPa;
+    const auto is_modulus = [&](double value) {
+      return is_likely_modulus(value, material.density);
+    };
     return fmt::format(
         "is as heavy as metal or stone ({:g} kg/m^3) and as soft as a gel: its modulus is {:g} Pa. "
-        "Is it in {}? 'youngs_modulus' then is {:g}",
-        material.density, material.youngs_modulus, in_MPa ? "MPa" : "GPa",
-        (in_MPa ? 1e6 : 1e9) * material.youngs_modulus);
+        "{}",
+        material.density, material.youngs_modulus,
+        likely_unit("it", "youngs_modulus", "Pa", material.youngs_modulus,
+                    {{"MPa", 1e6}, {"GPa", 1e9}}, is_modulus));
   }
 
   const Scene& scene_;

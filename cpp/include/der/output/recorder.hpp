@@ -52,8 +52,8 @@ class Recorder {
   [[nodiscard]] const std::optional<CrossingMonitor::Crossing>& crossing() const {
     return crossings_.found();
   }
-  /// Where a rod was saved first with more than twice its rest length.
-  [[nodiscard]] const std::optional<StrainMonitor::Stretched>& stretched() const {
+  /// Where a rod was saved first with strains beyond a linear law.
+  [[nodiscard]] const std::optional<StrainMonitor::Strained>& strained() const {
     return strains_.found();
   }
   /// Cost of the run so far, earlier parts of a resumed run included.

@@ -42,8 +42,8 @@ struct RunOutcome {
   OutOfPlaneAnswer out_of_plane;  ///< of a planar model
   /// Where a rod was seen first to pass through itself or another, which nothing prevents.
   std::optional<CrossingMonitor::Crossing> crossing;
-  /// Where a rod was seen first to be stretched beyond what a linear law holds for.
-  std::optional<StrainMonitor::Stretched> stretched;
+  /// Where a rod was seen first to be strained beyond what a linear law holds for.
+  std::optional<StrainMonitor::Strained> strained;
   [[nodiscard]] bool ok() const { return run_status::is_finished(status); }
   [[nodiscard]] bool failed() const { return !message.empty(); }
 };

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import der
@@ -117,6 +118,28 @@ def test_a_hint_names_the_kinks_of_supports_that_start_waves(swing, course):
     hint = str(caught[0].message)
     assert ("(supports.0.prescribe.x at 0 s)" in hint) == (course == "kinked")
     assert ("'smooth: true'" in hint) == (course == "kinked")
+
+
+@pytest.mark.parametrize("smooth", [False, True])
+def test_the_hint_of_kinks_comes_at_a_thousand_steps(swing, smooth):
+    """The kinks start waves: fewer steps are all that a smooth table takes."""
+    swing["rods"][0] |= {
+        "nodes": 31,
+        "cross_section": {"circle": {"radius": 0.01}},
+        "material": {"youngs_modulus": 1e7, "density": 1100},
+    }
+    table = {"times": [0, 0.3, 0.6, 1], "values": [0, 0.1, 0.1, 0], "smooth": smooth}
+    swing["supports"] = [
+        {"rod": "arm", "at": "start", "clamp": True},
+        {"rod": "arm", "at": "end", "clamp": True, "prescribe": {"y": table}},
+    ]
+    swing["loads"] = []
+    swing["time"] = {"duration": 1, "tolerance": 1e-3}
+    with warnings.catch_warnings(record=True):
+        warnings.simplefilter("always")
+        summary = der.run(swing).summary
+    assert (summary["steps"] > 1000) == (not smooth)
+    assert any("(supports.1.prescribe.y at" in hint for hint in summary["hints"]) == (not smooth)
 
 
 def test_probes_know_their_unit_and_summary(spheres):

@@ -13,6 +13,8 @@ namespace {
 
 /// More steps than users expect of a run with a tolerance.
 constexpr std::int64_t kManySteps = 20'000;
+/// More than a motion takes that starts no waves: a jump of velocity is the likely cause then.
+constexpr std::int64_t kManyAfterKinks = 1'000;
 /// Ratio of the longest step to the mean one, from which on the motion itself has changed.
 constexpr double kGrownRough = 10.0;
 
@@ -32,7 +34,7 @@ std::string about(const std::vector<MotionKink>& kinks) {
 
 std::vector<std::string> hints(const Simulation& simulation, const Counters& counters) {
   const std::int64_t steps = counters.steps;
-  if (!simulation.adaptive() || steps < kManySteps) return {};
+  if (!simulation.adaptive() || steps < kManyAfterKinks) return {};
   const scenario::Time& time = simulation.scenario().scene().time;
   const double mean = simulation.state().time / static_cast<double>(steps);
   const double longest = simulation.longest_step();
@@ -43,11 +45,13 @@ std::vector<std::string> hints(const Simulation& simulation, const Counters& cou
                                [](const MotionKink& kink) { return kink.time == 0.0; }),
                 kinks.end());
   }
-  if (!kinks.empty()) {
+  // Steps of order 1 are many without any wave.
+  if (!kinks.empty() && (steps >= kManySteps || simulation.integrator().order > 1)) {
     return {fmt::format("time.tolerance: {:g} took {} steps of about {:.2g} s", time.tolerance,
                         steps, mean) +
             about(kinks)};
   }
+  if (steps < kManySteps) return {};
   if (is_even) {
     return {fmt::format(
         "time.tolerance: {:g} took {} steps of about {:.2g} s. It limits the error that all steps "

@@ -185,3 +185,153 @@ def test_joined_rods_are_looked_at_but_for_their_joint():
     assert "rods 'base' and 'arm' pass through one another at t = 1." in text
     scene["time"]["duration"] = 1.0
     assert der.run(scene).summary["warnings"] == []
+
+
+def arm(radius=0.006, modulus=1e6, density=1100, loads=None):
+    loads = [{"gravity": [0, -9.81]}] if loads is None else loads
+    return {
+        "rods": [
+            rod("arm", [0, 0], [0.3, 0])
+            | {
+                "nodes": 21,
+                "cross_section": {"circle": {"radius": radius}},
+                "material": {"youngs_modulus": modulus, "density": density},
+            }
+        ],
+        "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+        "loads": loads,
+        "time": {"duration": 0.1, "step": 0.01},
+    }
+
+
+@pytest.mark.parametrize(
+    ("numbers", "text"),
+    [
+        ({"modulus": 1}, "Is it in MPa? 'youngs_modulus' then is 1e+06"),
+        # In MPa it would be one of the softest gels.
+        ({"modulus": 0.001}, "Is it in GPa? 'youngs_modulus' then is 1e+06"),
+        ({"modulus": 1e-7}, "No unit makes 'youngs_modulus' a likely number: it is read in Pa"),
+        ({"modulus": 2.1, "density": 7850}, "No unit makes 'youngs_modulus' a likely number"),
+        ({"density": 1.1}, "Is it in g/cm^3? 'density' then is 1100"),
+        # In g/cm^3 it would be as light as air.
+        ({"density": 0.0011}, "Is it in kg/cm^3? 'density' then is 1100"),
+        ({"density": 1.1e-9}, "Is it in t/mm^3? 'density' then is 1100"),
+        ({"density": 1.1e9}, "No unit makes 'density' a likely number: it is read in kg/m^3"),
+        ({"radius": 6}, "Is its cross-section in mm? 'radius' then is 0.006"),
+        ({"radius": 6000}, "Is its cross-section in um? 'radius' then is 0.006"),
+        # M r / EI = 4 M / (pi E r^3) = 15
+        (
+            {"loads": [{"moment": {"rod": "arm", "at": "end", "moment": 2.5}}]},
+            "would be strained by 15 if its moments bent it",
+        ),
+    ],
+)
+def test_a_unit_that_is_named_makes_a_likely_number(numbers, text):
+    (told,) = der.Scenario.from_dict(arm(**numbers)).warnings
+    assert text in told
+
+
+def test_a_moment_that_a_rod_bears_is_not_doubted():
+    loads = [{"moment": {"rod": "arm", "at": "end", "moment": 0.1}}]
+    assert not der.Scenario.from_dict(arm(loads=loads)).warnings
+
+
+def test_strains_by_bending_and_by_compression_are_told():
+    """An end that a moment bends to kappa r = 1.5, and a rod that is pressed to a tenth."""
+    bent = arm(loads=[{"moment": {"rod": "arm", "at": "end", "moment": 1.5 * 0.1696}}])
+    bent["rods"][0] |= {"nodes": 401}
+    del bent["time"]
+    with pytest.warns(der.UnreliableResultWarning, match=r"its surface is strained by 1\.[56]"):
+        der.run(bent | {"analysis": "static"}, check=False)
+    pressed = arm(loads=[])
+    pressed["supports"] = [
+        {"rod": "arm", "at": "all", "fix": ["y"]},
+        {"rod": "arm", "at": "start", "fix": ["x"]},
+        {"rod": "arm", "at": "end", "prescribe": {"x": -0.27}},
+    ]
+    del pressed["time"]
+    with pytest.warns(der.UnreliableResultWarning, match="compressed to 0.1 times its rest length"):
+        der.run(pressed | {"analysis": "static"}, check=False)
+
+
+@pytest.mark.parametrize(
+    ("rods", "nodes", "analysis", "text"),
+    [
+        (50, 19999, {"analysis": "static"}, "its 50 rods of 999950 nodes take 3 GB"),
+        (
+            10,
+            99999,
+            {"time": {"duration": 1, "step": 0.01}},
+            "its 10 rods of 999990 nodes take 1.2",
+        ),
+        (10, 1000, {"analysis": "static"}, None),
+    ],
+)
+def test_the_size_of_a_scene_is_that_of_all_its_rods(rods, nodes, analysis, text):
+    scene = arm()
+    del scene["time"]
+    names = [f"r{i}" for i in range(rods)]
+    scene["rods"] = [
+        scene["rods"][0]
+        | {"name": name, "nodes": nodes, "from": [0, 0.1 * i], "to": [0.3, 0.1 * i]}
+        for i, name in enumerate(names)
+    ]
+    scene["supports"] = [{"rod": name, "at": "start", "clamp": True} for name in names]
+    told = der.Scenario.from_dict(scene | analysis).warnings
+    assert [text in one for one in told] == ([True] if text else [])
+
+
+def test_a_turn_that_a_coarse_mesh_has_lost_beside_a_clamp_is_told():
+    """With 20 nodes the end does not follow its clamp around; with 80 it does."""
+    scene = {
+        "rods": [
+            {
+                "name": "r",
+                "nodes": 20,
+                "from": [0, 0],
+                "to": [2.873240873484383, 0],
+                "cross_section": {
+                    "stiffness": {
+                        "EA": 2372.539779482633,
+                        "EI": 0.12252154815627136,
+                        "mass_per_length": 1,
+                    }
+                },
+            }
+        ],
+        "supports": [
+            {
+                "rod": "r",
+                "at": "start",
+                "fix": ["x", "y"],
+                "spring": {"rotational_stiffness": 1.3324963773599359},
+            },
+            {
+                "rod": "r",
+                "at": "end",
+                "clamp": True,
+                "prescribe": {
+                    "angle": -7.3904707307687705,
+                    "x": -0.3332460140027345,
+                    "y": -0.05627860173480093,
+                },
+            },
+        ],
+        "loads": [
+            {
+                "distributed_force": {
+                    "rod": "r",
+                    "force": [-0.022268900342547016, -0.04033331898772794],
+                }
+            }
+        ],
+        "analysis": "static",
+    }
+    with pytest.warns(der.UnreliableResultWarning, match="less or more than the clamps"):
+        result = der.run(scene, check=False)
+    assert result.summary["largest_turning_angle"] == pytest.approx(6.3, abs=0.3)
+    scene["rods"][0]["nodes"] = 80
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        assert der.run(scene, check=False).summary["largest_turning_angle"] < 1.0
+    assert not any("clamp" in str(one.message) for one in told)

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "der/core/constants.hpp"
 #include "der/core/loops.hpp"
 #include "der/output/datasets.hpp"
 #include "der/output/hints.hpp"
@@ -130,17 +131,22 @@ std::string crossing_warning(const Simulation& simulation, const RunOutcome& out
   return describe(*outcome.crossing, place_in_run(simulation, *outcome.crossing));
 }
 
-/// That a rod is stretched beyond what a linear law holds for, unless the scene has been told
+/// That a rod is strained beyond what a linear law holds for, unless the scene has been told
 /// already that a unit is wrong.
-std::string stretch_warning(const Simulation& simulation, const RunOutcome& outcome) {
-  if (!outcome.stretched || outcome.failed()) return {};
+std::string strain_warning(const Simulation& simulation, const RunOutcome& outcome) {
+  if (!outcome.strained || outcome.failed()) return {};
   if (!scenario::unit_problem(simulation.scenario().scene()).empty()) return {};
-  const StrainMonitor::Stretched& found = *outcome.stretched;
+  return describe(*outcome.strained, place_in_run(simulation, *outcome.strained));
+}
+
+/// That a rod has lost a turn: a node alone turns by less than half a turn.
+std::string lost_turn_warning(const RunOutcome& outcome) {
+  if (!outcome.equilibrium || !(outcome.equilibrium->largest_turning_angle > kPi)) return {};
   return fmt::format(
-      "rod '{}' is stretched to {:.3g} times its rest length {}, at arc length {:.4g} m: no "
-      "material obeys a linear law so far. Are the units of its modulus, sizes and loads Pa, m and "
-      "N?",
-      found.rod, found.ratio, place_in_run(simulation, found), found.place);
+      "a rod turns by {:.2g} rad less or more than the clamps and springs that hold it: its mesh "
+      "is "
+      "too coarse beside them and has lost a turn. Give it more nodes",
+      outcome.equilibrium->largest_turning_angle);
 }
 
 bool sought_buckling(const Simulation& simulation) {
@@ -220,7 +226,7 @@ std::string created_energy_warning(const Simulation& simulation) {
 
 std::vector<std::string> doubts(const Simulation& simulation, const RunOutcome& outcome) {
   std::vector<std::string> found{crossing_warning(simulation, outcome),
-                                 stretch_warning(simulation, outcome),
+                                 strain_warning(simulation, outcome), lost_turn_warning(outcome),
                                  created_energy_warning(simulation)};
   found.erase(std::remove(found.begin(), found.end(), std::string()), found.end());
   return found;

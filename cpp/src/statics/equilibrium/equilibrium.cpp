@@ -1,12 +1,16 @@
 #include "der/statics/equilibrium.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "der/core/constants.hpp"
+#include "der/core/index.hpp"
 #include "der/energies/circulatory_load.hpp"
+#include "der/kinematics/planar_edge.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/model/edge_change.hpp"
 #include "der/model/prescribed_motion.hpp"
@@ -73,6 +77,45 @@ bool is_unbounded(const FailedSearch& failed) {
 bool may_come_from_rounding(EquilibriumFailure cause) {
   return cause == EquilibriumFailure::LostInRoundoff || cause == EquilibriumFailure::NewtonFailed ||
          cause == EquilibriumFailure::StepsUsedUp;
+}
+
+/// What a planar rod turns by less or more than the clamps and springs along it that count whole
+/// turns, if that is more than half a turn [rad]: at a node or clamp of a coarse mesh it has been
+/// lost. Joints have rotations of their own.
+double lost_turn(const Model& model, const Shape& shape) {
+  if (model.dimension != 2) return 0.0;
+  double largest = 0.0;
+  const auto turn_to = [](const Vec2& from, const Vec2& to) { return angle_between(from, to); };
+  for (const RodMesh& rod : model.rods) {
+    std::vector<double> turned{0.0};  // each edge against the first one, from the drawn shape on
+    for (Index edge = 1; edge < rod.num_edges(); ++edge) {
+      const Edge before = rod.edge(edge - 1, model);
+      const Edge after = rod.edge(edge, model);
+      turned.push_back(
+          turned.back() +
+          turn_to(along_edge(before, shape.positions), along_edge(after, shape.positions)) -
+          turn_to(along_edge(before, model.initial_positions),
+                  along_edge(after, model.initial_positions)));
+    }
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    const auto count = [&](Index edge, double turn) {  // what the first edge has turned by then
+      least = std::min(least, turn - turned[to_size(edge)]);
+      most = std::max(most, turn - turned[to_size(edge)]);
+    };
+    for (const Clamp& clamp : rod.clamps) {
+      const Index beside = edge_beside(rod, clamp.place);
+      const Edge edge = rod.edge(beside, model);
+      count(beside, clamp.followed >= 0 ? shape.followed[clamp.followed]
+                                        : turn_to(along_edge(edge, model.initial_positions),
+                                                  along_edge(edge, shape.positions)));
+    }
+    for (const MomentPlace& place : rod.moment_places) {
+      if (place.followed >= 0) count(place.first_edge, shape.followed[place.followed]);
+    }
+    if (most - least > kPi) largest = std::max(largest, most - least);
+  }
+  return largest;
 }
 
 /// Tries the methods in their order, and keeps count of what they did.
@@ -271,6 +314,11 @@ class EquilibriumSearch {
     }
   }
 
+  /// At nodes, or what a coarse mesh has lost between them [rad].
+  [[nodiscard]] double sharpest_turn(const Shape& shape) const {
+    return std::max(largest_turning_angle(model_, shape.positions), lost_turn(model_, shape));
+  }
+
   /// Enters stability, residual and largest turning angle of an equilibrium into the report, and
   /// polishes the equilibrium. Fails if round-off hides it. Without a potential there is no verdict
   /// on stability, and Newton's method had the exact tangent.
@@ -280,7 +328,7 @@ class EquilibriumSearch {
     if (!has_potential_) {
       report_.stability.judged = false;
       report_.residual = model_.dofs.largest_free_force(loads_.force - stiffness_.gradient());
-      report_.largest_turning_angle = largest_turning_angle(model_, shape.positions);
+      report_.largest_turning_angle = sharpest_turn(shape);
       return std::nullopt;
     }
     report_.stability = stiffness_.stability();
@@ -295,7 +343,7 @@ class EquilibriumSearch {
       unbalanced = std::max(unbalanced, stiffness_.rounding() * model_.size());
     }
     if (neutral && report_.residual > unbalanced) resolved = false;
-    report_.largest_turning_angle = largest_turning_angle(model_, shape.positions);
+    report_.largest_turning_angle = sharpest_turn(shape);
     if (resolved) return std::nullopt;
     return FailedSearch{EquilibriumFailure::LostInRoundoff, {}};
   }

@@ -229,10 +229,9 @@ void find_joints(const scenario::Scene& scene, Model& model) {
             end.section = section_at_end(rod, leg, at_end, model);
           } else {
             // Whole turns count along the rod.
-            const double near =
-                at_end                  ? leg.start.direction + reference_turn(rod, leg, model)
-                : rod.legs.empty()      ? 0.0
-                                        : rod.legs.back().end.direction;
+            const double near = at_end ? leg.start.direction + reference_turn(rod, leg, model)
+                                : rod.legs.empty() ? 0.0
+                                                   : rod.legs.back().end.direction;
             end.direction = nearest_turn(tangent_direction(rod, leg, at_end, model), near);
           }
         }

@@ -89,14 +89,14 @@ class CrossingMonitor {
 
   std::vector<Places> overlaps_;  // at the start, sorted
   std::optional<Crossing> found_;
-  Vector seen_;                      // positions at the last look [m]
-  double clearance_ = 0.0;           // [m] then, between all that may meet; 0 before the first look
-  double income_ = 0.0;              // work that a step pays for
-  double credit_ = 0.0;              // work that the steps since have paid for
-  double work_ = 0.0;                // of the last look
-  double thickest_ = 0.0;            // [m] the largest radius
-  double same_ = 0.0;                // [m] axes nearer than this cross
-  std::vector<double> length_;       // of each rod now [m]
+  Vector seen_;                 // positions at the last look [m]
+  double clearance_ = 0.0;      // [m] then, between all that may meet; 0 before the first look
+  double income_ = 0.0;         // work that a step pays for
+  double credit_ = 0.0;         // work that the steps since have paid for
+  double work_ = 0.0;           // of the last look
+  double thickest_ = 0.0;       // [m] the largest radius
+  double same_ = 0.0;           // [m] axes nearer than this cross
+  std::vector<double> length_;  // of each rod now [m]
   std::vector<double> longest_edge_;  // of each rod at rest [m]
   std::vector<Piece> pieces_;
   std::vector<Box> boxes_;

@@ -84,7 +84,7 @@ class JointRotations {
 
   const Model& model_;
   std::unique_ptr<SpatialJointRotations> in_space_;  // null: in a plane
-  std::vector<bool> lags_;  // of each rotation
+  std::vector<bool> lags_;                           // of each rotation
   bool any_lags_ = false;
   std::vector<Index> free_;               // degrees of freedom
   std::vector<Index> number_;             // of each rotation among these; -1: held

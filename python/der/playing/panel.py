@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from der._core import quantities
@@ -40,7 +41,7 @@ class Panel:
             label = control.path.replace(".", " ") + (f" [{control.unit}]" if control.unit else "")
             reach, step = control.reach, control.step
             self._sliders[control] = slider = gui.add_slider(label, -reach, reach, step, 0.0)
-            _on(slider.on_update, put, lambda value, control=control: self._set(control, value))
+            _on(slider.on_update, put, partial(self._set, control))
         self._values = gui.add_markdown("")
         gui.add_markdown(note)
         units = {one.name: one.unit for one in quantities()}

@@ -19,13 +19,14 @@ import importlib.metadata
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from peers import use_one_core
 
 if TYPE_CHECKING:
-    from cosseratbench import Experiment, Scenario, Solver, Trajectory
+    from cosseratbench import Capability, Experiment, Scenario, Solver, Trajectory
 
 EXPERIMENTS = ("cantilever", "catenary", "pendulum", "twist")
 #: Names on the board, and the packages that they drive.
@@ -41,11 +42,16 @@ class Timed:
 
     solver: Solver
     seconds: float = float("nan")
-    name: str = field(init=False)
-    capabilities: Any = field(init=False)
 
-    def __post_init__(self) -> None:
-        self.name, self.capabilities = self.solver.name, self.solver.capabilities
+    @property
+    def name(self) -> str:
+        """Name on the board."""
+        return str(self.solver.name)
+
+    @property
+    def capabilities(self) -> frozenset[Capability]:
+        """What the solver can do."""
+        return self.solver.capabilities
 
     def run(self, scenario: Scenario, *, n_elements: int, n_frames: int) -> Trajectory:
         """Run a scenario."""
@@ -80,7 +86,11 @@ def score(experiment: Experiment, solver: Solver, n_elements: int | None) -> Sco
             break
     why = ""
     if result.outcome != "completed":
-        why = f"diverged: {result.failure}" if result.failure else "needs " + ", ".join(result.missing)
+        why = (
+            f"diverged: {result.failure}"
+            if result.failure
+            else "needs " + ", ".join(result.missing)
+        )
     return Score(experiment.name, solver.name, result.n_elements, dict(result.metrics), least, why)
 
 
@@ -92,7 +102,9 @@ def solvers(names: Sequence[str]) -> Iterator[tuple[Solver, str]]:
         try:
             version = importlib.metadata.version(SOLVERS[name])
             if name == "mujoco" and int(version.partition(".")[0]) > 3:
-                print(f"MuJoCo {version} lacks the cable that the board runs: pip install 'mujoco<4'")
+                print(
+                    f"MuJoCo {version} lacks the cable that the board runs: pip install 'mujoco<4'"
+                )
                 continue
             yield registry.load_solver(name), version
         except ModuleNotFoundError:
@@ -141,7 +153,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("nothing to measure", file=sys.stderr)
         return 1
     titles = {solver.name: f"{TITLES[solver.name]} {version}" for solver, version in found}
-    print(f"cosseratbench {importlib.metadata.version('cosseratbench')}: " + ", ".join(titles.values()))
+    print(
+        f"cosseratbench {importlib.metadata.version('cosseratbench')}: "
+        + ", ".join(titles.values())
+    )
     scores = []
     for name in options.experiments:
         for solver, _ in found:
@@ -168,15 +183,25 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
-def write_csv(path: Any, scores: Sequence[Score]) -> None:
+def write_csv(path: Path, scores: Sequence[Score]) -> None:
     """Write a row for each metric."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with path.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
-        rows.writerow(["experiment", "solver", "elements", "metric", "value", "cpu_seconds", "outcome"])
+        rows.writerow(
+            ["experiment", "solver", "elements", "metric", "value", "cpu_seconds", "outcome"]
+        )
         for one in scores:
             for metric, value in (one.metrics or {"": float("nan")}).items():
                 rows.writerow(
-                    [one.experiment, one.solver, one.n_elements, metric, value, one.seconds, one.outcome]
+                    [
+                        one.experiment,
+                        one.solver,
+                        one.n_elements,
+                        metric,
+                        value,
+                        one.seconds,
+                        one.outcome,
+                    ]
                 )
 
 

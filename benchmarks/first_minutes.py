@@ -63,8 +63,10 @@ result.plot().savefig("picture.png")
         ("mujoco", "matplotlib"),
         """
 import matplotlib.pyplot as plt, mujoco
-body = '<body pos="0 0 1"><joint axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .5 0 0" size=".02"/></body>'
-model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody><light pos='0 -1 3'/>{body}</worldbody></mujoco>")
+model = mujoco.MjModel.from_xml_string('''<mujoco><worldbody><light pos="0 -1 3"/>
+  <body pos="0 0 1"><joint axis="0 1 0"/>
+    <geom type="capsule" fromto="0 0 0 .5 0 0" size=".02"/></body>
+</worldbody></mujoco>''')
 data = mujoco.MjData(model)
 mujoco.mj_step(model, data, 500)
 renderer = mujoco.Renderer(model)
@@ -79,8 +81,8 @@ plt.imsave("picture.png", renderer.render())
 import diffrax, jax.numpy as jnp, matplotlib.pyplot as plt
 term = diffrax.ODETerm(lambda t, y, args: jnp.array([y[1], -jnp.sin(y[0])]))
 times = jnp.linspace(0, 10, 200)
-saved = diffrax.SaveAt(ts=times)
-solution = diffrax.diffeqsolve(term, diffrax.Tsit5(), 0, 10, 0.1, jnp.array([1.0, 0.0]), saveat=saved)
+start, saved = jnp.array([1.0, 0.0]), diffrax.SaveAt(ts=times)
+solution = diffrax.diffeqsolve(term, diffrax.Tsit5(), 0, 10, 0.1, start, saveat=saved)
 plt.plot(times, solution.ys[:, 0])
 plt.savefig("picture.png")
 """,
@@ -150,7 +152,10 @@ def measure(package: Package, der: Sequence[str]) -> Row:
 
 def run(command: Sequence[str], folder: Path) -> tuple[float, float, str]:
     """Run a command; return its seconds by the clock and of the processor, and what it printed."""
-    environment = os.environ | {"CCACHE_DISABLE": "1", "MUJOCO_GL": os.environ.get("MUJOCO_GL", "egl")}
+    environment = os.environ | {
+        "CCACHE_DISABLE": "1",
+        "MUJOCO_GL": os.environ.get("MUJOCO_GL", "egl"),
+    }
     environment.pop("PYTHONPATH", None)
     used, before = processor_time(), time.perf_counter()
     done = subprocess.run(
@@ -172,10 +177,9 @@ def size_of(folder: Path) -> int:
 
 def table(rows: Sequence[Row]) -> str:
     """Return the rows as a table in Markdown."""
-    lines = [
-        "| | installed in | of the processor | on disk | libraries, of the system | lines | first picture |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    heads = ["", "installed in", "of the processor", "on disk", "libraries, of the system"]
+    heads += ["lines", "first picture"]
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     for row in rows:
         lines.append(
             f"| {row.title} | {row.wall:.0f} s | {row.processor:.0f} s | {row.size / 1e6:.0f} MB | "

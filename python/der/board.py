@@ -164,7 +164,9 @@ def _supports(rod: Rod, scenario: Scenario) -> dict[End, _Support]:
     if abs(motion.axis[axis]) < 1.0:
         raise NotImplementedError("a clamp that slides askew to the axes")
     if supports[other].condition is not EndCondition.CLAMPED or supports[other].motion is not None:
-        raise NotImplementedError("a clamp that slides, opposite to an end that is not clamped at rest")
+        raise NotImplementedError(
+            "a clamp that slides, opposite to an end that is not clamped at rest"
+        )
     if not scenario.quasi_static or scenario.gravity[axis] != 0.0:
         raise NotImplementedError("a clamp that slides, with inertia or weight along its axis")
     along = np.zeros(3)
@@ -227,7 +229,11 @@ class _Case:
             "supports": list(self._held(rod)),
             "loads": [
                 {"gravity": gravity[self.axes]},
-                {"damping": {"coefficient": _damping_rate(scenario) * rod.material.density * rod.area}},
+                {
+                    "damping": {
+                        "coefficient": _damping_rate(scenario) * rod.material.density * rod.area
+                    }
+                },
                 *(
                     {"point_force": {"rod": "rod", "at": end.value, "force": one.force[self.axes]}}
                     for end, one in self.supports.items()
@@ -242,7 +248,9 @@ class _Case:
             # Drawn between its supports.
             edges = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
             if np.ptp(edges) > 1e-4 * np.mean(edges):
-                raise NotImplementedError("a rod that is held at both ends and starts unevenly stretched")
+                raise NotImplementedError(
+                    "a rod that is held at both ends and starts unevenly stretched"
+                )
             points = self.nodes
         else:
             # Drawn without stress; `run` brings it to where it starts.
@@ -275,8 +283,12 @@ class _Case:
         for end, one in self.supports.items():
             support: dict[str, Any] = {"rod": "rod", "at": end.value}
             if one.slides is not None:
-                stiffness = _STIFF * rod.material.youngs_modulus * rod.second_moment_of_area / rod.length
-                support["fix"] = [names[i] for i, axis in enumerate(self.axes) if axis != one.slides]
+                stiffness = (
+                    _STIFF * rod.material.youngs_modulus * rod.second_moment_of_area / rod.length
+                )
+                support["fix"] = [
+                    names[i] for i, axis in enumerate(self.axes) if axis != one.slides
+                ]
                 support["spring"] = {"rotational_stiffness": stiffness}
             elif one.condition is EndCondition.CLAMPED:
                 support["clamp"] = True

@@ -44,8 +44,10 @@ from der.simulation import Simulation
 
 _Array: TypeAlias = NDArray[np.float64]
 
-#: Of order 4, and it damps the vibrations that its steps do not resolve.
-_INTEGRATOR = "sdirk4"
+#: Of a motion that is the result: of order 4. Both damp the vibrations that steps do not resolve.
+_OF_MOTIONS = "sdirk4"
+#: Of a motion towards an equilibrium, or through equilibria.
+_OF_EQUILIBRIA = "tr_bdf2"
 #: The longest step, times the angular frequency of the slowest vibration.
 _STEP = 0.3
 #: The stiffness against turning of a clamp that slides, over EI/L of its rod.
@@ -79,7 +81,7 @@ class Solver:
         step, _ = self._steps(scenario, n_frames)
         return {
             "method": "run over time",
-            "integrator": _INTEGRATOR,
+            "integrator": _integrator(scenario),
             "time_step": step,
             "damping_rate": _damping_rate(scenario),
         }
@@ -97,7 +99,8 @@ class Solver:
         if scenario.obstacles:
             raise NotImplementedError("contact with obstacles")
         step, steps = self._steps(scenario, n_frames)
-        time = {"duration": scenario.duration, "step": step, "integrator": _INTEGRATOR}
+        time = {"duration": scenario.duration, "step": step}
+        time["integrator"] = _integrator(scenario)
         timing = {"time": time, "output": {"every": step * steps}}
         positions, directors = [], []
         for rod in scenario.rods:
@@ -122,6 +125,10 @@ class Solver:
 def _is_static(scenario: Scenario) -> bool:
     moves = any(rod.motion(end) is not None for rod in scenario.rods for end in End)
     return scenario.quasi_static and not moves
+
+
+def _integrator(scenario: Scenario) -> str:
+    return _OF_EQUILIBRIA if scenario.quasi_static else _OF_MOTIONS
 
 
 def _damping_rate(scenario: Scenario) -> float:
@@ -174,6 +181,22 @@ def _supports(rod: Rod, scenario: Scenario) -> dict[End, _Support]:
     supports[end] = replace(supports[end], motion=replace(motion, slides_along=None))
     supports[other] = replace(supports[other], slides=axis, force=-along)
     return supports
+
+
+def _end_tangents(rod: Rod) -> tuple[_Array, _Array]:
+    """Return the directions of a centerline at its ends: those of circles through three points."""
+    line = np.asarray(rod.centerline, float)
+    return _first_tangent(line), -_first_tangent(line[::-1])
+
+
+def _first_tangent(line: _Array) -> _Array:
+    steps = np.diff(line[:3], axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    slopes = steps / lengths[:, None]
+    tangent = slopes[0]
+    if len(slopes) == 2:
+        tangent = slopes[0] + (slopes[0] - slopes[1]) * lengths[0] / lengths.sum()
+    return np.asarray(tangent / np.linalg.norm(tangent))
 
 
 def _turning(motion: Motion) -> tuple[_Array, _Array]:
@@ -242,28 +265,38 @@ class _Case:
             ],
         }
 
+    def _drawn(self, rod: Rod) -> _Array:
+        """Return the nodes of a shape with edges of one length, which tells where supports are.
+
+        `run` writes the shape with which the rod starts.
+        """
+        share = np.linspace(0.0, 1.0, len(self.nodes))[:, None]
+        start, end = np.asarray(rod.centerline, float)[[0, -1]]
+        at_start, at_end = _end_tangents(rod)
+        if self.supports[End.END].condition is EndCondition.FREE:
+            return start + rod.length * share * at_start
+        if self.supports[End.START].condition is EndCondition.FREE:
+            return end - rod.length * (1.0 - share) * at_end
+        chord = end - start
+        span = float(np.linalg.norm(chord))
+        clamped = [
+            tangent
+            for one, tangent in zip(self.supports.values(), (at_start, at_end), strict=True)
+            if one.condition is EndCondition.CLAMPED
+        ]
+        if 2.0 * span > rod.length and all(chord @ one > span * (1.0 - 1e-12) for one in clamped):
+            return start + share * chord
+        edges = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
+        if np.ptp(edges) > 1e-4 * np.mean(edges):
+            raise NotImplementedError(
+                "a rod that starts bent and unevenly stretched, held at both ends"
+            )
+        return self.nodes
+
     def _rod(self, rod: Rod) -> dict[str, Any]:
-        ends = [self.supports[end].condition is not EndCondition.FREE for end in End]
-        if all(ends):
-            # Drawn between its supports.
-            edges = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
-            if np.ptp(edges) > 1e-4 * np.mean(edges):
-                raise NotImplementedError(
-                    "a rod that is held at both ends and starts unevenly stretched"
-                )
-            points = self.nodes
-        else:
-            # Drawn without stress; `run` brings it to where it starts.
-            arc = np.linspace(0.0, rod.length, len(self.nodes))
-            line = np.asarray(rod.centerline, float)
-            tangent = line[-1] - line[-2] if ends[1] else line[1] - line[0]
-            base = line[-1] if ends[1] else line[0]
-            if ends[1]:
-                arc = arc - rod.length
-            points = base + np.outer(arc, tangent / np.linalg.norm(tangent))
         drawn: dict[str, Any] = {
             "name": "rod",
-            "points": points[:, self.axes],
+            "points": self._drawn(rod)[:, self.axes],
             "rest_length": rod.length,
             "cross_section": {"circle": {"radius": rod.radius}},
             "material": {
@@ -336,14 +369,21 @@ class _Case:
                 nodes[:, :, one.slides] -= drift[:, None]
         if len(self.axes) == 2:
             return nodes, self._turned_in_the_plane(result.positions)
-        assert result.directors is not None
+        assert result.directors is not None and result.sections is not None
         tangents = np.diff(nodes, axis=1)
         tangents /= np.linalg.norm(tangents, axis=2, keepdims=True)
-        # The board's directors stand at a constant angle to those of the scene.
-        across = np.cross(tangents, result.directors)
-        cosine = np.sum(result.directors[0] * self.directors, axis=1)[:, None]
+        # Directors of the scene, carried from the frames of its edges, which begin at the pivots of
+        # clamps, to the edges between nodes.
+        framed = result.sections.frames[:, :, :3]
+        along = np.sum(result.directors * tangents, axis=2) / (
+            1.0 + np.sum(framed * tangents, axis=2)
+        )
+        own = result.directors - along[:, :, None] * (framed + tangents)
+        # Those of the board stand at a constant angle to them.
+        across = np.cross(tangents, own)
+        cosine = np.sum(own[0] * self.directors, axis=1)[:, None]
         sine = np.sum(across[0] * self.directors, axis=1)[:, None]
-        return nodes, cosine * result.directors + sine * across
+        return nodes, cosine * own + sine * across
 
     def _turned_in_the_plane(self, positions: _Array) -> _Array:
         """Return the directors of a planar rod, which turn as its edges do."""

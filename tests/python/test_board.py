@@ -55,8 +55,8 @@ def test_the_board_finds_it():
     assert Solver.backend_version == importlib.metadata.version("der")
 
 
-# Elements of the board's own. The first error is that of linear theory, the second has 3.8e-4 of
-# the bending that the reference leaves out, and 2.1e-4 of the mesh, of the other sign.
+# With the board's own numbers of elements. That of the cantilever is the error of linear theory,
+# which is the reference. The reference of the catenary leaves out bending, worth 3.8e-4 of the sag.
 @pytest.mark.parametrize(
     ("name", "metric", "largest"),
     [
@@ -65,7 +65,7 @@ def test_the_board_finds_it():
         ("catenary", "shape_error", 4.7e-4),
         ("pendulum", "period_error", 1.3e-5),
         ("pendulum", "amplitude_change", 1e-4),
-        ("twist", "critical_twist_error", 1e-3),
+        ("twist", "critical_twist_error", 1.6e-3),
     ],
 )
 def test_its_errors_on_the_board(name, metric, largest):
@@ -139,8 +139,9 @@ def test_a_motion_in_a_plane_is_the_same_in_space(held, motion):
         loads=(PointLoad(tuple(turn @ force)),),
         **askew,
     )
-    planar = run(flat, n_frames=11, gravity=tuple(weight))
-    spatial = run(other, n_frames=11, gravity=tuple(turn @ weight))
+    frames = {"n_frames": 21, "duration": 0.4}
+    planar = run(flat, **frames, gravity=tuple(weight))
+    spatial = run(other, **frames, gravity=tuple(turn @ weight))
     np.testing.assert_allclose(spatial.positions[0], planar.positions[0] @ turn.T, atol=1e-7)
     np.testing.assert_allclose(spatial.directors[0], planar.directors[0] @ turn.T, atol=1e-6)
     assert np.abs(planar.positions[0][-1] - planar.positions[0][0]).max() > 1e-3

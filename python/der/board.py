@@ -369,7 +369,8 @@ class _Case:
                 nodes[:, :, one.slides] -= drift[:, None]
         if len(self.axes) == 2:
             return nodes, self._turned_in_the_plane(result.positions)
-        assert result.directors is not None and result.sections is not None
+        assert result.directors is not None
+        assert result.sections is not None
         tangents = np.diff(nodes, axis=1)
         tangents /= np.linalg.norm(tangents, axis=2, keepdims=True)
         # Directors of the scene, carried from the frames of its edges, which begin at the pivots of

@@ -98,14 +98,15 @@ class Solver:
         """
         if scenario.obstacles:
             raise NotImplementedError("contact with obstacles")
-        step, steps = self._steps(scenario, n_frames)
-        time = {"duration": scenario.duration, "step": step}
-        time["integrator"] = _integrator(scenario)
-        timing = {"time": time, "output": {"every": step * steps}}
+        solved: dict[str, Any] = {"analysis": "static"}
+        if not _is_static(scenario):
+            step, steps = self._steps(scenario, n_frames)
+            time = {"duration": scenario.duration, "integrator": _integrator(scenario)}
+            solved = {"time": time | {"step": step}, "output": {"every": step * steps}}
         positions, directors = [], []
         for rod in scenario.rods:
             case = _Case(rod, scenario, n_elements)
-            result = case.run({"analysis": "static"} if _is_static(scenario) else timing)
+            result = case.run(solved)
             nodes, turned = case.trajectory(result)
             if _is_static(scenario):
                 nodes = np.stack([rod.nodes(n_elements), *[nodes[-1]] * (n_frames - 1)])
@@ -350,8 +351,8 @@ class _Case:
                 moved["rotation"] = {"axis": axis, "angle": {"times": times, "values": angles}}
         return moved
 
-    def run(self, timing: dict[str, Any]) -> Result:
-        simulation = Simulation(self.scene | timing)
+    def run(self, solved: dict[str, Any]) -> Result:
+        simulation = Simulation(self.scene | solved)
         simulation.positions[...] = self.nodes[:, self.axes]
         try:
             return simulation.run()

@@ -33,7 +33,11 @@ Format<Joint> joint_format() {
                                   JointKind::Hinge},
                                  {{"ball", "each rod turns freely about the others, in space"},
                                   JointKind::Ball}}),
-              "How they are joined."));
+              "How they are joined.")
+          .optional("spring", &Joint::spring, spring_format(),
+                    "Only with `kind: hinge`, between two rods: a spring that turns with them.")
+          .optional("damping", &Joint::damping, number("N m s/rad", not_negative()),
+                    "Likewise: moment per rate of the angle between the two.", "0"));
 }
 
 }  // namespace der::scenario

@@ -27,7 +27,6 @@ from der.plotting import PALETTE, style, time_colours
 from der.plotting.space import make_picture
 from der.plotting.style import MUTED, look
 from matplotlib.patheffects import withStroke
-from screenshots import chromium
 from tutorials import beam_study, control, falling_rod, finger, fitting
 
 if TYPE_CHECKING:
@@ -639,6 +638,7 @@ def view(path: Path) -> None:
 def play(path: Path) -> None:
     """Write a screenshot of a scene that is played, while the mouse pulls."""
     import viser  # noqa: F401 - without it the picture is left as it is
+    from screenshots import chromium
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.support.ui import WebDriverWait
 

@@ -23,7 +23,7 @@ DofMap::DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts,
 Dof DofMap::operator[](Index dof) const {
   if (dof >= rotation(0)) {
     const Index number = dof - rotation(0);
-    return {DofKind::Rotation, number, dimension_ == 3 ? static_cast<int>(number % 3) : 0};
+    return {DofKind::Rotation, number, dimension_ == 3 ? number % 3 : 0};
   }
   if (dof >= num_positions()) return {DofKind::Angle, dof - num_positions(), 0};
   return {DofKind::Position, dof / dimension_, dof % dimension_};

@@ -9,9 +9,9 @@ from contextlib import redirect_stdout
 from queue import SimpleQueue
 from typing import Any
 
+from der.arguments import whole_number
 from der.errors import DerError
 from der.scenario import SceneLike
-from der.whole_numbers import whole_number
 
 _FRAME = 1.0 / 30.0  # [s]
 _COMPUTING = 0.8  # most of a frame; the rest is for the page

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import argparse
 
+from der.arguments import whole_number_argument
 from der.playing import play
-from der.spelled_numbers import whole_number_argument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -70,8 +70,8 @@ def straight_in_space(n, **more):
 
 
 ALONG = {"position", "tangent", "bend", "edge", "section", "natural"}
-#: Energies need no larger model.
-KINDS = ALONG | {"velocity", "support", "actuation", "ring", "energy"}
+#: Energies need no larger model, and with joints there is no smaller one.
+KINDS = ALONG | {"velocity", "support", "actuation", "ring", "energy", "joint"}
 
 
 def spatial_quantities(kinds):
@@ -332,7 +332,10 @@ def answered(scene, probes):
     try:
         der.Scenario.from_dict({**scene, "output": {**scene.get("output", {}), "probes": probes}})
     except der.SceneError as error:
-        refused = {d.path.split(".")[2] for d in error.diagnostics}
+        # The last of many says how many more there are.
+        paths = [d.path.split(".") for d in error.diagnostics]
+        refused = {path[2] for path in paths if path[:2] == ["output", "probes"]}
+        assert refused, error
         return answered(scene, {p: v for p, v in probes.items() if p not in refused})
     return probes
 

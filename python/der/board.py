@@ -157,7 +157,7 @@ def _supports(rod: Rod, scenario: Scenario) -> dict[End, _Support]:
         end: _Support(
             rod.condition(end),
             rod.motion(end),
-            np.sum([load.force for load in rod.loads if load.at is end] or [np.zeros(3)], axis=0),
+            sum((np.asarray(load.force) for load in rod.loads if load.at is end), np.zeros(3)),
         )
         for end in End
     }
@@ -272,7 +272,8 @@ class _Case:
         `run` writes the shape with which the rod starts.
         """
         share = np.linspace(0.0, 1.0, len(self.nodes))[:, None]
-        start, end = np.asarray(rod.centerline, float)[[0, -1]]
+        start: _Array = np.asarray(rod.centerline[0], float)
+        end: _Array = np.asarray(rod.centerline[-1], float)
         at_start, at_end = _end_tangents(rod)
         if self.supports[End.END].condition is EndCondition.FREE:
             return start + rod.length * share * at_start

@@ -11,6 +11,7 @@
 #include "der/energies/stretch.hpp"
 #include "der/model/frames.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/leg_cells.hpp"
 #include "model/leg_curvature.hpp"
 
 namespace der {
@@ -32,15 +33,9 @@ class SpatialLegBuilder {
       : leg_(leg), rod_(rod), model_(model) {}
 
   void add() {
-    const Index cells = leg_.num_cells();
-    const bool at_start = leg_.start.rotation >= 0;
-    const bool at_end = leg_.end.rotation >= 0;
-    if (at_start && at_end && cells <= 2) {
-      cells == 1 ? add_end_cell<1, 2>(true) : add_end_cell<2, 2>(true);
-      return;
-    }
-    if (at_start) cells == 1 ? add_end_cell<1, 1>(true) : add_end_cell<2, 1>(true);
-    if (at_end) cells == 1 ? add_end_cell<1, 1>(false) : add_end_cell<2, 1>(false);
+    for_each_end_cell(leg_, [this](auto edges, auto joints, bool from_start) {
+      add_end_cell<edges(), joints()>(from_start);
+    });
     // A leg of two cells between a joint and an end without a moment has its only node in one.
     for (Index place = leg_.first + 1; place < leg_.last; ++place) {
       if (!leg_.in_end_cell(place)) add_bend(place);

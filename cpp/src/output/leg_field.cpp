@@ -16,9 +16,11 @@
 #include "der/energies/strain_rate.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "model/leg_cells.hpp"
 #include "model/leg_curvature.hpp"
 #include "model/reference_edge.hpp"
 #include "output/actuated_shape.hpp"
+#include "output/each_leg_field.hpp"
 
 namespace der {
 namespace {
@@ -189,17 +191,8 @@ class LegReader {
   /// middles of the two nearest edges.
   [[nodiscard]] Vec2 force(Index node, const Model& model, const State& state,
                            Part part = Part::Whole) const {
-    const Index last = leg_.num_cells();
-    if (last == 1) return edge_force(0, part, model, state);
-    const Index before = std::min(std::max<Index>(node - 1, 0), last - 2);
-    const double a = length(before);
-    const double b = length(before + 1);
-    const double from_middle = node <= before       ? -0.5 * a
-                               : node == before + 1 ? 0.5 * a
-                                                    : 0.5 * a + b;
-    const double share = from_middle / (0.5 * (a + b));
-    return (1.0 - share) * edge_force(before, part, model, state) +
-           share * edge_force(before + 1, part, model, state);
+    return through_middles<Vec2>(leg_, rod_, node,
+                                 [&](Index edge) { return edge_force(edge, part, model, state); });
   }
   /// Its component along the tangent [N].
   [[nodiscard]] double tension(Index node, const Model& model, const State& state,
@@ -255,25 +248,13 @@ class LegReader {
 
   template <class Curvature>
   void find_moments(const Model& model) {
-    const Index cells = leg_.num_cells();
-    const bool both = leg_.start.rotation >= 0 && leg_.end.rotation >= 0 && cells <= 2;
-    if (leg_.start_cell >= 0) {
-      if (both) {
-        cells == 1 ? add_cell<EndCell<Curvature, 1, 2>>(true, model)
-                   : add_cell<EndCell<Curvature, 2, 2>>(true, model);
-      } else {
-        cells == 1 ? add_cell<EndCell<Curvature, 1, 1>>(true, model)
-                   : add_cell<EndCell<Curvature, 2, 1>>(true, model);
-      }
-    }
-    if (leg_.end_cell >= 0) {
-      cells == 1 ? add_cell<EndCell<Curvature, 1, 1>>(false, model)
-                 : add_cell<EndCell<Curvature, 2, 1>>(false, model);
-    }
+    for_each_end_cell(leg_, [&](auto edges, auto joints, bool from_start) {
+      add_cell<EndCell<Curvature, edges(), joints()>>(from_start, model);
+    });
     if (leg_.first_bend < 0) return;
     const auto& bends = elements_of<PlanarBend<Curvature>>(*model.elements);
     const Index first = leg_.start_cell >= 0 ? 2 : 1;
-    const Index last = cells - (leg_.end_cell >= 0 ? 2 : 1);
+    const Index last = leg_.num_cells() - (leg_.end_cell >= 0 ? 2 : 1);
     for (Index node = first; node <= last; ++node) {
       const std::size_t number = to_size(leg_.first_bend + node - first);
       const auto constants = bends.constants[number];
@@ -330,14 +311,7 @@ class LegReader {
                                          reference_edge(rod_, leg_.first + k, model)) /
                            rod_.voronoi_length(leg_.first + k);
     }
-    const auto beyond = [&](Index near, Index far, double share) {
-      return drawn_[to_size(near)] + share * (drawn_[to_size(near)] - drawn_[to_size(far)]);
-    };
-    if (last == 2) drawn_.front() = drawn_.back() = drawn_[1];
-    if (last > 2) {
-      drawn_.front() = beyond(1, 2, length(0) / length(1));
-      drawn_.back() = beyond(last - 1, last - 2, length(last - 1) / length(last - 2));
-    }
+    continue_to_ends(leg_, rod_, drawn_);
     natural_ = drawn_;
     if (rod_.natural_curvature.empty()) return;
     const auto first = rod_.natural_curvature.begin() + leg_.first;
@@ -455,23 +429,16 @@ class LegPlaceField : public RodField {
   std::vector<bool> smooth_;
 };
 
-class LegField : public RodField {
+class LegField : public EachLegField {
  public:
   LegField(LegQuantity quantity, const RodMesh& rod, const Model& model)
-      : RodField(arc_lengths(rod)), quantity_(quantity) {
-    for (const Leg& leg : rod.legs) {
-      for (Index node = 0; node <= leg.num_cells(); ++node) {
-        places_.emplace_back(legs_.size(), node);
-        const Index first_or_last = node == 0 ? leg.first : node == leg.num_cells() ? leg.last : 0;
-        smooth_.push_back(first_or_last == 0 || first_or_last == rod.num_edges());
-      }
-      legs_.emplace_back(leg, rod, model);
-    }
+      : EachLegField(rod), quantity_(quantity) {
+    for (const Leg& leg : rod.legs) legs_.emplace_back(leg, rod, model);
   }
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    const auto& [number, node] = places_[i];
+    const auto& [number, node] = places()[i];
     const LegReader& leg = legs_[number];
     switch (quantity_) {
       case LegQuantity::Moment:
@@ -497,23 +464,10 @@ class LegField : public RodField {
     }
     return leg.slope(node, model, state);
   }
-  [[nodiscard]] bool smooth_at(std::size_t i) const override { return smooth_[i]; }
 
  private:
-  static std::vector<double> arc_lengths(const RodMesh& rod) {
-    std::vector<double> places;
-    for (const Leg& leg : rod.legs) {
-      for (Index place = leg.first; place <= leg.last; ++place) {
-        places.push_back(rod.arc_length[to_size(place)]);
-      }
-    }
-    return places;
-  }
-
   LegQuantity quantity_;
   std::vector<LegReader> legs_;
-  std::vector<std::pair<std::size_t, Index>> places_;  // of each sample: its leg, its node there
-  std::vector<bool> smooth_;
 };
 
 }  // namespace

@@ -12,7 +12,9 @@
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/spatial_end_cell.hpp"
 #include "der/model/frames.hpp"
+#include "model/leg_cells.hpp"
 #include "model/leg_curvature.hpp"
+#include "output/each_leg_field.hpp"
 
 namespace der {
 namespace {
@@ -44,7 +46,7 @@ class SpatialLegReader {
     }
   }
 
-  /// What the rod behind a node exerts on the rod before it [N m].
+  /// The moment that the rod behind a node exerts on the rod before it [N m].
   [[nodiscard]] Vec3 moment(Index node, const Configuration& here) const {
     return moments_[to_size(node)](here);
   }
@@ -78,17 +80,8 @@ class SpatialLegReader {
   /// The force [N] that the rod behind a node exerts on the rod before it: linear through the
   /// middles of the two nearest edges.
   [[nodiscard]] Vec3 force(Index node, const Model& model, const Configuration& here) const {
-    const Index last = leg_.num_cells();
-    if (last == 1) return edge_force(0, model, here);
-    const Index before = std::min(std::max<Index>(node - 1, 0), last - 2);
-    const double a = length(before);
-    const double b = length(before + 1);
-    const double from_middle = node <= before       ? -0.5 * a
-                               : node == before + 1 ? 0.5 * a
-                                                    : 0.5 * a + b;
-    const double share = from_middle / (0.5 * (a + b));
-    return (1.0 - share) * edge_force(before, model, here) +
-           share * edge_force(before + 1, model, here);
+    return through_middles<Vec3>(leg_, rod_, node,
+                                 [&](Index edge) { return edge_force(edge, model, here); });
   }
   [[nodiscard]] double tension(Index node, const Model& model, const Configuration& here) const {
     return force(node, model, here).dot(section(node, model, here).tangent);
@@ -176,26 +169,14 @@ class SpatialLegReader {
 
   template <class Curvature>
   void find_moments(const Model& model) {
-    const Index cells = leg_.num_cells();
-    const bool both = leg_.start.rotation >= 0 && leg_.end.rotation >= 0 && cells <= 2;
-    if (leg_.start_cell >= 0) {
-      if (both) {
-        cells == 1 ? add_cell<SpatialEndCell<Curvature, 1, 2>>(true, model)
-                   : add_cell<SpatialEndCell<Curvature, 2, 2>>(true, model);
-      } else {
-        cells == 1 ? add_cell<SpatialEndCell<Curvature, 1, 1>>(true, model)
-                   : add_cell<SpatialEndCell<Curvature, 2, 1>>(true, model);
-      }
-    }
-    if (leg_.end_cell >= 0) {
-      cells == 1 ? add_cell<SpatialEndCell<Curvature, 1, 1>>(false, model)
-                 : add_cell<SpatialEndCell<Curvature, 2, 1>>(false, model);
-    }
+    for_each_end_cell(leg_, [&](auto edges, auto joints, bool from_start) {
+      add_cell<SpatialEndCell<Curvature, edges(), joints()>>(from_start, model);
+    });
     if (leg_.first_bend < 0) return;
     using Bend = SpatialBend<Curvature>;
     const auto& bends = elements_of<Bend>(*model.elements);
     const Index first = leg_.start_cell >= 0 ? 2 : 1;
-    const Index last = cells - (leg_.end_cell >= 0 ? 2 : 1);
+    const Index last = leg_.num_cells() - (leg_.end_cell >= 0 ? 2 : 1);
     for (Index node = first; node <= last; ++node) {
       const std::size_t bend = to_size(leg_.first_bend + node - first);
       moments_[to_size(node)] = [constants = bends.constants[bend],
@@ -237,14 +218,7 @@ class SpatialLegReader {
       drawn_[to_size(k)].head<2>() =
           Vec2(strain.kappa_1, strain.kappa_2) / rod_.voronoi_length(leg_.first + k);
     }
-    const auto beyond = [&](Index near, Index far, double share) -> Vec3 {
-      return drawn_[to_size(near)] + share * (drawn_[to_size(near)] - drawn_[to_size(far)]);
-    };
-    if (last == 2) drawn_.front() = drawn_.back() = drawn_[1];
-    if (last > 2) {
-      drawn_.front() = beyond(1, 2, length(0) / length(1));
-      drawn_.back() = beyond(last - 1, last - 2, length(last - 1) / length(last - 2));
-    }
+    continue_to_ends(leg_, rod_, drawn_);
     natural_ = drawn_;
     for (Index k = 0; k <= last; ++k) {
       const std::size_t place = to_size(leg_.first + k);
@@ -274,53 +248,33 @@ class SpatialLegReader {
   End end_;
 };
 
-class SpatialLegField : public RodField {
+class SpatialLegField : public EachLegField {
  public:
   /// Reads the value at a node of a leg.
   using Reading = std::function<double(const SpatialLegReader& leg, Index node, const Model& model,
                                        const Configuration& here)>;
 
   SpatialLegField(Reading read, const RodMesh& rod, const Model& model)
-      : RodField(arc_lengths(rod)), read_(std::move(read)) {
-    for (const Leg& leg : rod.legs) {
-      for (Index node = 0; node <= leg.num_cells(); ++node) {
-        places_.emplace_back(legs_.size(), node);
-        const Index first_or_last = node == 0 ? leg.first : node == leg.num_cells() ? leg.last : 0;
-        smooth_.push_back(first_or_last == 0 || first_or_last == rod.num_edges());
-      }
-      legs_.emplace_back(leg, rod, model);
-    }
+      : EachLegField(rod), read_(std::move(read)) {
+    for (const Leg& leg : rod.legs) legs_.emplace_back(leg, rod, model);
   }
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    const auto& [number, node] = places_[i];
+    const auto& [number, node] = places()[i];
     return read_(legs_[number], node, model, configuration_of(model, state));
   }
   void sample_all(const Model& model, const State& state, double* values) const override {
     const Configuration here = configuration_of(model, state);
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      const auto& [number, node] = places_[i];
+    for (std::size_t i = 0; i < places().size(); ++i) {
+      const auto& [number, node] = places()[i];
       values[i] = read_(legs_[number], node, model, here);
     }
   }
-  [[nodiscard]] bool smooth_at(std::size_t i) const override { return smooth_[i]; }
 
  private:
-  static std::vector<double> arc_lengths(const RodMesh& rod) {
-    std::vector<double> places;
-    for (const Leg& leg : rod.legs) {
-      for (Index place = leg.first; place <= leg.last; ++place) {
-        places.push_back(rod.arc_length[to_size(place)]);
-      }
-    }
-    return places;
-  }
-
   Reading read_;
   std::vector<SpatialLegReader> legs_;
-  std::vector<std::pair<std::size_t, Index>> places_;  // of each sample: its leg, its node there
-  std::vector<bool> smooth_;
 };
 
 SpatialLegField::Reading reading_of(SpatialLegQuantity quantity, double EA) {

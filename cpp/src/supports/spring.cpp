@@ -178,7 +178,7 @@ void add_spring(const scenario::Support& support, Model& model) {
       elements_of<SpatialJointSpring>(*model.elements)
           .add({first, first + 1, first + 2}, joint_spring(spring, s, rod, model));
     } else {
-      elements_of<JointSpring>(*model.elements).add({first}, {spring.rotational_stiffness[0]});
+      elements_of<JointSpring<1>>(*model.elements).add({first}, {spring.rotational_stiffness[0]});
     }
   } else if (model.dimension == 2) {
     place_of_moments(s, rod).stiffness += spring.rotational_stiffness[0];

@@ -268,11 +268,9 @@ typename ArcStretch<Edges, Joints>::Constants sample_constants(const ArcStretch<
   return c;
 }
 
-inline JointSpring::Constants sample_constants(const JointSpring&, Random& random) {
-  return {uniform(random, 0.5, 5.0)};
-}
-
-inline HingeSpring::Constants sample_constants(const HingeSpring&, Random& random) {
+template <int Joints>
+typename JointSpring<Joints>::Constants sample_constants(const JointSpring<Joints>&,
+                                                         Random& random) {
   return {uniform(random, 0.5, 5.0)};
 }
 

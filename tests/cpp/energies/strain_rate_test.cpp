@@ -78,9 +78,10 @@ struct StrainLoads {
   static Loads known(const Loads& loads) { return loads; }
 };
 template <>
-struct StrainLoads<HingeSpring> {
+struct StrainLoads<JointSpring<2>> {
   using Loads = Eigen::Matrix<double, 1, 1>;
-  static Loads of(const HingeSpring::Constants& c, const Configuration& /*here*/, const Vec2& x) {
+  static Loads of(const JointSpring<2>::Constants& c, const Configuration& /*here*/,
+                  const Vec2& x) {
     return Loads(c.stiffness * (x[1] - x[0]));
   }
   static Loads known(const Loads& loads) { return loads; }

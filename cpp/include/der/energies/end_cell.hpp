@@ -139,7 +139,7 @@ struct EndCell {
       stiffness = slope.asDiagonal() * c.stiffness * slope.asDiagonal();
       stiffness.diagonal() += load.cwiseProduct(second);
     }
-    /// Of the length of an edge [1/m^2].
+    /// One over the squared length of an edge [1/m^2].
     [[nodiscard]] double inverse_squared(int edge) const {
       return 1.0 / vectors[std::size_t(edge) + 1].squaredNorm();
     }

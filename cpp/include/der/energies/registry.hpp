@@ -11,7 +11,6 @@
 #include "der/energies/fork.hpp"
 #include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
-#include "der/energies/hinge_spring.hpp"
 #include "der/energies/isotropic_bend.hpp"
 #include "der/energies/joint_spring.hpp"
 #include "der/energies/planar_bend.hpp"
@@ -46,8 +45,8 @@ struct ElementLists {
       ElementList<EndCell<AngleCurvature, 2, 2>>, ElementList<EndCell<TangentCurvature, 2, 2>>,
       ElementList<ArcStretch<1, 1>>, ElementList<ArcStretch<1, 2>>, ElementList<ArcStretch<2, 0>>,
       ElementList<ArcStretch<2, 1>>, ElementList<ArcStretch<2, 2>>, ElementList<ArcStretch<3, 0>>,
-      ElementList<ArcStretch<3, 1>>, ElementList<ArcStretch<3, 2>>, ElementList<JointSpring>,
-      ElementList<HingeSpring>,                                         //
+      ElementList<ArcStretch<3, 1>>, ElementList<ArcStretch<3, 2>>, ElementList<JointSpring<1>>,
+      ElementList<JointSpring<2>>,                                      //
       ElementList<Stretch<3>>,                                          //
       ElementList<FromSpatialPivot<Stretch<3>>>,                        //
       ElementList<IsotropicBend<AngleCurvature>>,                       //

@@ -132,8 +132,8 @@ struct SpatialEndCell {
       }
       return all;
     }
-    /// What the section of a frame has turned by about its tangent since the reference twists were
-    /// taken, nearly [rad].
+    /// The angle, nearly, by which the section of a frame has turned about its tangent since the
+    /// reference twists were taken [rad].
     [[nodiscard]] double turned(const Constants& c, const Coordinates& x, int frame) const {
       const int number = c.number_of(frame);
       if (!c.is_joint(frame)) return x[3 * kNodes + number];

@@ -7,7 +7,7 @@
 #include "der/energies/damping_times.hpp"
 #include "der/energies/end_cell.hpp"
 #include "der/energies/from_pivot.hpp"
-#include "der/energies/hinge_spring.hpp"
+#include "der/energies/joint_spring.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
 #include "der/energies/spatial_bend.hpp"
@@ -140,15 +140,15 @@ struct StrainRate<EndCell<Curvature, Edges, Joints>>
 
 /// The rate is that of the angle between the sides; the damping is not that of a material.
 template <>
-struct StrainRate<HingeSpring> : StrainRateBase<HingeSpring, 1> {
-  static Mat3 viscosity(const HingeSpring::Constants& c, const DampingTimes& times) {
+struct StrainRate<JointSpring<2>> : StrainRateBase<JointSpring<2>, 1> {
+  static Mat3 viscosity(const JointSpring<2>::Constants& c, const DampingTimes& times) {
     return single(times.bending * c.stiffness);
   }
-  static Gradient gradient(const HingeSpring::Constants& /*c*/, const Configuration& /*here*/,
+  static Gradient gradient(const JointSpring<2>::Constants& /*c*/, const Configuration& /*here*/,
                            const Local& /*x*/) {
-    return {-1.0, 1.0};
+    return JointSpring<2>::gradient().transpose();
   }
-  /// Of a hinge with this damping [N m s].
+  /// The viscosity of a hinge with a damping [N m s].
   static Mat3 of_hinge(double damping) { return single(damping); }
 };
 

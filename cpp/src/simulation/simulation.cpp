@@ -157,10 +157,11 @@ void Simulation::settle_rotations(JointRotations::Which which) {
   if (!model_.has_rotations() || !find_nonfinite().empty()) return;
   Configuration here;
   evaluate_controls(model_, state_, state_.time, here.controls);
-  JointRotations(model_, which).settle(here.controls, state_.extra_force, state_.positions);
+  JointRotations rotations(model_);
+  rotations.settle(here.controls, state_.extra_force, state_.positions, which);
   if (model_.has_sections()) der::follow(model_, state_);
   here.coordinates = state_.positions;
-  JointRotations(model_).set_rates(here, state_.extra_force, state_.velocities);
+  rotations.set_rates(here, state_.extra_force, state_.velocities);
 }
 
 std::string Simulation::find_nonfinite() const {

@@ -89,7 +89,7 @@ void JointRotations::find_lagging(const Model& model) {
   });
 }
 
-JointRotations::JointRotations(const Model& model, Which which) : model_(model) {
+JointRotations::JointRotations(const Model& model) : model_(model) {
   const DofMap& dofs = model.dofs;
   find_lagging(model);
   if (model.dimension == 3 && model.has_rotations()) {
@@ -98,13 +98,12 @@ JointRotations::JointRotations(const Model& model, Which which) : model_(model) 
   }
   for (Index i = 0; i < dofs.num_rotations(); ++i) {
     const bool is_free = dofs.is_free(dofs.rotation(i));
-    any_lags_ = any_lags_ || (is_free && lags_[to_size(i)]);
-    const bool is_unknown = is_free && (which == Which::All || !lags_[to_size(i)]);
-    number_.push_back(is_unknown ? static_cast<Index>(free_.size()) : -1);
-    if (is_unknown) free_.push_back(dofs.rotation(i));
+    if (is_free && lags(i)) ++num_lagging_;
+    number_.push_back(is_free ? static_cast<Index>(free_.size()) : -1);
+    if (is_free) free_.push_back(dofs.rotation(i));
   }
   const auto acts_here = [&](const ControlledForce& force) {
-    return force.dof >= dofs.rotation(0) && number_of(force.dof) >= 0;
+    return force.dof >= dofs.rotation(0) && dofs.is_free(force.dof);
   };
   std::copy_if(model.controlled_forces.begin(), model.controlled_forces.end(),
                std::back_inserter(moments_), acts_here);
@@ -124,8 +123,27 @@ JointRotations::JointRotations(const Model& model, Which which) : model_(model) 
 
 void JointRotations::begin_system() {
   residual_.setZero();
+  clear_matrix();
+}
+
+void JointRotations::clear_matrix() {
   stiffness_.setZero();
   for (Coupling& coupling : couplings_) coupling.value = 0.0;
+}
+
+/// Keeps the rotations that lag behind, or all others, as they are: the solution is 0 there.
+void JointRotations::keep(bool lagging) {
+  const auto is_kept = [&](Index i) {
+    return lags(free_[to_size(i)] - model_.dofs.rotation(0)) == lagging;
+  };
+  for_each_free([&](Index i, Index /*dof*/) {
+    if (!is_kept(i)) return;
+    residual_[i] = 0.0;
+    stiffness_[i] = 1.0;
+  });
+  for (Coupling& coupling : couplings_) {
+    if (is_kept(coupling.a) || is_kept(coupling.b)) coupling.value = 0.0;
+  }
 }
 
 /// Adds the gradient of the energy, and the stiffness, by the free rotations.
@@ -186,15 +204,19 @@ void JointRotations::subtract_moments(const Vector& extra_force) {
 }
 
 /// By conjugate gradients, with the diagonal as preconditioner: the stiffness by rotations is
-/// positive. Without couplings it is done at once. The damping of a hinge alone leaves the common
-/// rate of its sides alone, and so does this.
+/// positive. The damping of a hinge alone leaves the common rate of its sides alone, and so does
+/// this.
 void JointRotations::solve() {
   constexpr double kSmall = 1e-14;
   constexpr double kSingular = 1e-12;
+  if (couplings_.empty()) {
+    step_ = residual_.cwiseQuotient(stiffness_);
+    return;
+  }
   step_.setZero();
   remains_ = residual_;
   double slope = 0.0;
-  const Index most = couplings_.empty() ? 1 : 2 * static_cast<Index>(free_.size()) + 10;
+  const Index most = 2 * static_cast<Index>(free_.size()) + 10;
   for (Index i = 0; i < most; ++i) {
     scaled_ = remains_.cwiseQuotient(stiffness_);
     const double before = slope;
@@ -230,10 +252,11 @@ bool JointRotations::take(Vector& coordinates) const {
 }
 
 double JointRotations::settle(const Vector& controls, const Vector& extra_force,
-                              Vector& coordinates) {
+                              Vector& coordinates, Which which) {
   if (in_space_) return in_space_->settle(controls, extra_force, coordinates);
   double work = 0.0;
-  if (free_.empty()) return work;
+  const bool some = which == Which::Undamped && any_lags();
+  if (free_.size() == (some ? num_lagging_ : 0)) return work;
   here_.controls = controls;
   const auto add_work = [&](double sign) {
     for (const auto& [dof, control, weight] : moments_) {
@@ -247,6 +270,7 @@ double JointRotations::settle(const Vector& controls, const Vector& extra_force,
     begin_system();
     add_elastic();
     subtract_moments(extra_force);
+    if (some) keep(true);
     solve();
     if (take(coordinates)) break;
   }
@@ -256,25 +280,18 @@ double JointRotations::settle(const Vector& controls, const Vector& extra_force,
 
 void JointRotations::set_rates(const Configuration& here, const Vector& extra_force,
                                Vector& velocities) {
-  if (!any_lags_ || free_.empty()) return;
+  if (!any_lags()) return;
   here_.coordinates = here.coordinates;
   here_.controls = here.controls;
   velocities_ = velocities;
   begin_system();
   add_elastic();
   subtract_moments(extra_force);
-  stiffness_.setZero();
-  for (Coupling& coupling : couplings_) coupling.value = 0.0;
+  clear_matrix();
   add_viscous(1.0);
-  for_each_free([&](Index i, Index dof) {
-    if (lags_[to_size(dof - model_.dofs.rotation(0))]) return;
-    residual_[i] = 0.0;
-    stiffness_[i] = 1.0;
-  });
+  keep(false);
   solve();
-  for_each_free([&](Index i, Index dof) {
-    if (lags_[to_size(dof - model_.dofs.rotation(0))]) velocities[dof] -= step_[i];
-  });
+  for_each_free([&](Index i, Index dof) { velocities[dof] -= step_[i]; });
 }
 
 /// Solves for the rotations of `here_`, whose rates are `rate_factor` times what they are beyond

@@ -12,7 +12,7 @@ namespace der {
 DenseOutput::DenseOutput(const Model& model, const Assembler& assembler)
     : model_(model),
       force_(model, assembler),
-      rotations_(model, JointRotations::Which::Undamped),
+      rotations_(model),
       velocities_(Vector::Zero(model.num_dofs())),
       controls_(Vector::Zero(model.tables.size())),
       before_{Vector::Zero(model.num_dofs()), controls_},
@@ -28,7 +28,7 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
   evaluate_controls(model_, end, time, controls_);
   apply_prescribed_motion(model_, controls_, result.positions);
   if (model_.has_sections()) follow(model_, result);
-  rotations_.settle(controls_, end.extra_force, result.positions);
+  rotations_.settle(controls_, end.extra_force, result.positions, JointRotations::Which::Undamped);
   if (model_.has_sections() && model_.has_rotations()) follow(model_, result);
 
   Work work_start = start.work;

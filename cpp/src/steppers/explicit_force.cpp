@@ -37,7 +37,6 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       supports_move_(any_support_moves(model)),
       mass_(model),
       rotations_(model),
-      settled_(model, JointRotations::Which::Undamped),
       here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       scratch_controls_(here_.controls),
       force_(Vector::Zero(model.num_dofs())),
@@ -156,7 +155,8 @@ void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, 
   here_.coordinates = positions;
   here_.load_factor = state.load_factor;
   evaluate_controls(model_, state, time, here_.controls);
-  settled_.settle(here_.controls, state.extra_force, here_.coordinates);
+  rotations_.settle(here_.controls, state.extra_force, here_.coordinates,
+                    JointRotations::Which::Undamped);
   external_force(model_, here_, state.extra_force, force_);
 }
 

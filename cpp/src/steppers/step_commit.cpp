@@ -11,9 +11,7 @@ namespace der {
 StepCommit::StepCommit(const Model& model, HeldVelocities held, LaggingRotations lagging)
     : model_(model),
       held_velocities_(held),
-      rotations_(model, lagging == LaggingRotations::OfScheme ? JointRotations::Which::Undamped
-                                                              : JointRotations::Which::All),
-      lagging_(model),
+      rotations_(model),
       advances_rotations_(lagging == LaggingRotations::OfCommit && rotations_.any_lags()),
       controls_work_(any_clamp_turns(model) || model.natural_strain.is_actuated()),
       start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
@@ -73,10 +71,11 @@ void StepCommit::move_rotations(double dt, State& state) {
     state.work.loads += works.loads;
     state.work.drag += works.drag;
   } else {
-    state.work.loads += rotations_.settle(end_.controls, state.extra_force, state.positions);
+    state.work.loads += rotations_.settle(end_.controls, state.extra_force, state.positions,
+                                          JointRotations::Which::Undamped);
     if (model_.has_sections()) follow(model_, state.positions, end_.controls, state.followed);
     end_.coordinates = state.positions;
-    lagging_.set_rates(end_, state.extra_force, state.velocities);
+    rotations_.set_rates(end_, state.extra_force, state.velocities);
   }
   for (Index i = 0; i < model_.dofs.num_rotations(); ++i) {
     const Index dof = model_.dofs.rotation(i);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -20,18 +21,19 @@ namespace der {
 /// nothing once it is made.
 class JointRotations {
  public:
-  /// `Undamped` leaves those alone that lag behind.
+  /// Which rotations to settle: all, or those that do not lag behind.
   enum class Which { All, Undamped };
-  explicit JointRotations(const Model& model, Which which = Which::All);
+  explicit JointRotations(const Model& model);
 
-  [[nodiscard]] bool any_lags() const { return any_lags_; }
-  /// Of a rotation that is not held.
+  [[nodiscard]] bool any_lags() const { return num_lagging_ > 0; }
+  /// Whether a rotation, if it is not held, lags behind.
   [[nodiscard]] bool lags(Index rotation) const { return lags_[to_size(rotation)]; }
 
-  /// Sets the free rotations in `coordinates` so that the elastic moments on each add up to
-  /// nothing, at these controls and forces from outside. Does nothing in a model without joints.
-  /// Returns the work [J] that the moments do on the way.
-  double settle(const Vector& controls, const Vector& extra_force, Vector& coordinates);
+  /// Sets the free rotations in `coordinates`, or some of them, so that the elastic moments on each
+  /// add up to nothing, at these controls and forces from outside. Does nothing in a model without
+  /// joints. Returns the work [J] that the moments do on the way.
+  double settle(const Vector& controls, const Vector& extra_force, Vector& coordinates,
+                Which which = Which::All);
 
   /// Sets the rates [rad/s] of those that lag behind at `here`, where the nodes have the others of
   /// `velocities`. What damping does not determine, as the common rate of the two sides of a damped
@@ -75,6 +77,8 @@ class JointRotations {
   [[nodiscard]] Index number_of(Index dof) const;
   void find_lagging(const Model& model);
   void begin_system();
+  void clear_matrix();
+  void keep(bool lagging);
   void add_elastic();
   void add_viscous(double rate_factor);
   void subtract_moments(const Vector& extra_force);
@@ -85,11 +89,11 @@ class JointRotations {
   const Model& model_;
   std::unique_ptr<SpatialJointRotations> in_space_;  // null: in a plane
   std::vector<bool> lags_;                           // of each rotation
-  bool any_lags_ = false;
-  std::vector<Index> free_;               // degrees of freedom
-  std::vector<Index> number_;             // of each rotation among these; -1: held
-  std::vector<ControlledForce> moments_;  // on these
-  std::vector<Coupling> couplings_;       // in the order of the elements, then the damped
+  std::size_t num_lagging_ = 0;                      // free ones
+  std::vector<Index> free_;                          // degrees of freedom
+  std::vector<Index> number_;                        // of each rotation among these; -1: held
+  std::vector<ControlledForce> moments_;             // on these
+  std::vector<Coupling> couplings_;  // in the order of the elements, then the damped
   Configuration here_;
   Vector velocities_;
   Vector reference_;  // of rotations, from which their rates in a stage count [rad]

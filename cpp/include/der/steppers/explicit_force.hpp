@@ -59,8 +59,7 @@ class ExplicitForce {
   bool supports_move_;
   MassSolver mass_;
   JointRotations rotations_;
-  JointRotations settled_;  // those that do not lag behind
-  Configuration here_;      // of the last evaluation
+  Configuration here_;  // of the last evaluation
   Vector scratch_controls_;
   Vector force_;
   Vector gradient_;  // without what the transport of frames makes of torques

@@ -40,7 +40,6 @@ class StepCommit {
   const Model& model_;
   HeldVelocities held_velocities_;
   JointRotations rotations_;
-  JointRotations lagging_;
   bool advances_rotations_ = false;
   bool controls_work_ = false;  // whether any control does work without a displacement
   Configuration start_;

@@ -13,6 +13,7 @@ from typing import Any
 import der
 import numpy as np
 import pytest
+from network_scenes import at, clamp, final, force, joint, scene_of
 from references.networks import Network, Scene
 from scipy.optimize import brentq, minimize_scalar
 
@@ -32,38 +33,16 @@ def rod(name: str, start: list[float], end: list[float], edges: int, **more: Any
     return line | {"cross_section": {"stiffness": stiffness}} | more
 
 
-def at(name: str, place: Any, **more: Any) -> Scene:
-    return {"rod": name, "at": place, **more}
-
-
-def joint(name: str, *members: Scene, **more: Any) -> Scene:
-    return {"name": name, "of": list(members), **more}
-
-
 def hinge(name: str, *members: Scene) -> Scene:
     return joint(name, *members, kind="hinge")
-
-
-def force(name: str, place: Any, *components: float) -> Scene:
-    return {"point_force": at(name, place, force=list(components))}
 
 
 def moment(name: str, place: Any, value: float) -> Scene:
     return {"moment": at(name, place, moment=value)}
 
 
-def clamp(name: str, place: Any, **more: Any) -> Scene:
-    return at(name, place, clamp=True, **more)
-
-
 def pin(name: str, place: Any, **more: Any) -> Scene:
     return at(name, place, fix=["x", "y"], **more)
-
-
-def scene_of(
-    rods: list[Scene], joints: list[Scene], supports: list[Scene], loads: list[Scene]
-) -> Scene:
-    return {"rods": rods, "joints": joints, "supports": supports, "loads": loads}
 
 
 # Scenes: functions of a fineness.
@@ -688,12 +667,6 @@ def swinging(step: float, integrator: str, **time: Any) -> Scene:
     }
     settings = {"duration": 0.8, "step": step, "integrator": integrator, **time}
     return scene | {"time": settings, "output": {"probes": probes, "every": 0.8}}
-
-
-def final(scene: Scene, **changes: Any) -> dict[str, float]:
-    result = der.run(der.Scenario.from_dict(scene).with_(**changes))
-    assert result.status == "completed"
-    return {name: float(values[-1]) for name, values in result.probes.items()}
 
 
 @pytest.fixture(scope="module")

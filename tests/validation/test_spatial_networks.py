@@ -13,6 +13,7 @@ from typing import Any
 import der
 import numpy as np
 import pytest
+from network_scenes import at, clamp, final, force, joint, scene_of
 from references.spatial_networks import Scene, SpatialNetwork
 
 FINENESS = [2, 4, 8]
@@ -43,34 +44,12 @@ def arc(name: str, radius: float, angle: float, start: list[float], edges: int) 
     return {"name": name, "points": points.tolist(), "cross_section": section}
 
 
-def at(name: str, place: Any, **more: Any) -> Scene:
-    return {"rod": name, "at": place, **more}
-
-
-def joint(name: str, *members: Scene) -> Scene:
-    return {"name": name, "of": list(members)}
-
-
-def force(name: str, place: Any, *components: float, **more: Any) -> Scene:
-    return {"point_force": at(name, place, force=list(components), **more)}
-
-
 def moment(name: str, place: Any, *components: float, **more: Any) -> Scene:
     return {"moment": at(name, place, moment=list(components), **more)}
 
 
-def clamp(name: str, place: Any, **more: Any) -> Scene:
-    return at(name, place, clamp=True, **more)
-
-
 def pin(name: str, place: Any, **more: Any) -> Scene:
     return at(name, place, fix=["x", "y", "z"], **more)
-
-
-def scene_of(
-    rods: list[Scene], joints: list[Scene], supports: list[Scene], loads: list[Scene]
-) -> Scene:
-    return {"rods": rods, "joints": joints, "supports": supports, "loads": loads}
 
 
 # Scenes: functions of a fineness.
@@ -440,12 +419,6 @@ def swinging(step: float, integrator: str, **time: Any) -> Scene:
     }
     settings = {"duration": 0.8, "step": step, "integrator": integrator, **time}
     return scene | {"time": settings, "output": {"probes": probes, "every": 0.8}}
-
-
-def final(scene: Scene, **changes: Any) -> dict[str, float]:
-    result = der.run(der.Scenario.from_dict(scene).with_(**changes))
-    assert result.status == "completed"
-    return {name: float(values[-1]) for name, values in result.probes.items()}
 
 
 @pytest.fixture(scope="module")

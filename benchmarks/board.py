@@ -50,7 +50,7 @@ class Timed:
 
     @property
     def capabilities(self) -> frozenset[Capability]:
-        """What the solver can do."""
+        """The capabilities of the solver."""
         return self.solver.capabilities
 
     def run(self, scenario: Scenario, *, n_elements: int, n_frames: int) -> Trajectory:
@@ -63,7 +63,7 @@ class Timed:
 
 @dataclass(frozen=True)
 class Score:
-    """What a solver has reached in an experiment."""
+    """The score of a solver in an experiment."""
 
     experiment: str
     solver: str

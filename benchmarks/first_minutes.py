@@ -111,7 +111,7 @@ print(len(files - python), len(files - python - inside))
 
 @dataclass(frozen=True)
 class Row:
-    """What was measured for a package; times in seconds, the size in bytes."""
+    """The measurements of a package; times in seconds, the size in bytes."""
 
     title: str
     wall: float

@@ -1,4 +1,4 @@
-"""What programs and command lines give, and what is none: numbers, lists, key paths, names."""
+"""Checks of what programs and command lines give: numbers, lists, key paths, names."""
 
 from __future__ import annotations
 

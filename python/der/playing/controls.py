@@ -1,4 +1,4 @@
-"""What a player can set in a scene: names for it, and how far its sliders go."""
+"""The values that a player can set in a scene: their names, and how far their sliders go."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NO_VALUES = frozenset(("at", "from", "to", "axis", "times", "frequency", "phase
 
 @dataclass(frozen=True)
 class Control:
-    """What can be set, with its unit. Its slider goes from -`reach` to `reach` by the `step`."""
+    """A value that can be set, with its unit; `reach` and `step` are of its slider, about 0."""
 
     path: str
     unit: str

@@ -28,7 +28,7 @@ _GREY = "#9aa3ad"
 
 
 class Stage:
-    """What a page shows of a player beside its panel."""
+    """The view of a player on a page, beside its panel."""
 
     def __init__(self, server: Any, player: Player, put: Put) -> None:
         self._player, self._put = player, put

@@ -16,7 +16,7 @@ struct Hermite {
   double x0, x1, v0, v1;
   double slope_x, slope_v0, slope_v1;
 
-  /// Of numbers or vectors.
+  /// Takes numbers or vectors.
   template <class T>
   auto value(const T& first, const T& last, const T& first_rate, const T& last_rate) const {
     return x0 * first + x1 * last + v0 * first_rate + v1 * last_rate;

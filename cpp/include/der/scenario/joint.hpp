@@ -32,7 +32,7 @@ struct JointMember {
   Location at;
 };
 
-/// What acts between the two sides of a hinge.
+/// A spring between the two sides of a hinge.
 struct HingeSpring {
   double rotational_stiffness = 0.0;  ///< [N m/rad]
 };

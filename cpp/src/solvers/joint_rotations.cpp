@@ -316,8 +316,11 @@ void JointRotations::solve_stage(double rate_factor, const Vector& extra_force) 
 JointRotations::Works JointRotations::advance(const Motion& motion, Vector& coordinates,
                                               Vector& velocities) {
   constexpr double kDiagonal = 1.0 - 0.70710678118654752;
-  const auto& [state, start, start_rate, dt] = motion;
-  const Vector& extra_force = state.extra_force;
+  // Not a structured binding: lambdas do not capture its names before C++20 (clang 14).
+  const Vector& start = motion.start;
+  const Vector& start_rate = motion.start_rate;
+  const double dt = motion.dt;
+  const Vector& extra_force = motion.state.extra_force;
   const double rate_factor = 1.0 / (kDiagonal * dt);
   for_each_free([&](Index i, Index dof) { reference_[i] = start[dof]; });
   for (const double part : {kDiagonal, 1.0}) {
@@ -325,7 +328,7 @@ JointRotations::Works JointRotations::advance(const Motion& motion, Vector& coor
     here_.coordinates = weight.value(start, coordinates, start_rate, velocities);
     velocities_ = weight.rate(start, coordinates, start_rate, velocities);
     for_each_free([&](Index i, Index dof) { here_.coordinates[dof] = reference_[i]; });
-    evaluate_controls(model_, state, state.time + part * dt, here_.controls);
+    evaluate_controls(model_, motion.state, motion.state.time + part * dt, here_.controls);
     solve_stage(rate_factor, extra_force);
     if (part == 1.0) break;
     for_each_free([&](Index i, Index dof) {

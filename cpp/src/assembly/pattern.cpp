@@ -24,12 +24,15 @@ void add_mass_entries(const Model& model, Entries& entries) {
   for (const auto& [a, b, mass] : model.mass.coupling) add_entry(a, b, model, entries);
 }
 
-/// The free degrees of freedom of a ring: they follow one another. None: it is held as a whole.
+/// The free degrees of freedom of a ring, which follow one another. None: it is held as a whole, or
+/// has some that are among those of other rods.
 Border whole_ring(const RodMesh& rod, const Model& model) {
   Border ring{model.num_free(), 0, 0};
+  Index count = 0;
   const auto enter = [&](Index dof) {
     const Index place = model.dofs.free_index(dof);
     if (place < 0) return;
+    ++count;
     ring.first_column = std::min(ring.first_column, place);
     ring.end = std::max(ring.end, place + 1);
   };
@@ -39,6 +42,10 @@ Border whole_ring(const RodMesh& rod, const Model& model) {
   for (Index edge = 0; model.has_sections() && edge < rod.num_edges(); ++edge) {
     enter(model.dofs.angle(rod.first_edge + edge));
   }
+  for (const Leg& leg : rod.legs) {
+    if (leg.start.rotation >= 0) enter(model.dofs.rotation(leg.start.rotation));
+  }
+  if (ring.end - ring.first_column != count) return {};
   return ring;
 }
 

@@ -85,7 +85,7 @@ std::vector<std::vector<Index>> place_nodes(const scenario::Scene& scene, bool w
   }
   model.dofs = DofMap(model.dimension, model.num_nodes, edge_starts);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (scene.rods[i].closed) model.dofs.close(nodes[i].front(), nodes[i].back());
+    if (scene.rods[i].closed) model.dofs.close(nodes[i]);
   }
   model.initial_frames.setZero(FrameBlock::kSize * static_cast<Index>(edge_starts.size()));
   const Index dofs = model.num_dofs();

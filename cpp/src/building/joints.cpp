@@ -15,6 +15,7 @@
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
 #include "model/corner.hpp"
+#include "model/legs.hpp"
 #include "model/reference_edge.hpp"
 #include "scenario/rest_line.hpp"
 #include "supports/leg_clamp.hpp"
@@ -47,7 +48,8 @@ bool turns_rods(const scenario::Scene& scene, const scenario::Joint& joint) {
 RodPoints points_of(const scenario::Scene& scene, const RodMesh& rod, const Model& model) {
   const std::size_t count = rod.nodes.size();
   RodPoints points{std::vector<bool>(count), std::vector<bool>(count), std::vector<int>(count, -1)};
-  points.ends_leg.front() = points.ends_leg.back() = true;
+  points.ends_leg.front() = true;
+  if (!rod.closed) points.ends_leg.back() = true;
   const auto enter = [&](const std::string& name, const scenario::Location& at, bool turns) {
     if (name != rod.name) return;
     const bool all = at.kind == scenario::Location::Kind::All;
@@ -77,7 +79,10 @@ RodPoints points_of(const scenario::Scene& scene, const RodMesh& rod, const Mode
       enter(rod.name, at, false);
     }
   }
-  for (const Index place : corners_of(rod, model)) points.ends_leg[to_size(place)] = true;
+  const bool is_planar = model.dimension == 2;
+  for (const Index place : is_planar ? leg_bounds(rod, model) : corners_of(rod, model)) {
+    points.ends_leg[to_size(place)] = true;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     if (rod.sphere_radius[i] > 0.0) points.ends_leg[i] = true;
   }
@@ -92,6 +97,27 @@ RodPoints points_of(const scenario::Scene& scene, const RodMesh& rod, const Mode
     }
   }
   return points;
+}
+
+/// Ends legs beside their ends where two cells there are of unlike lengths, too: the end of a leg
+/// is one for cells that are nearly equal.
+void end_uneven_legs(const RodMesh& rod, std::vector<bool>& ends_leg) {
+  constexpr double kMost = 2.0;
+  const Index last = rod.num_edges();
+  const auto length = [&](Index edge) { return rod.edge_length[to_size(rod.position(edge))]; };
+  const auto ends = [&](Index place) -> std::vector<bool>::reference {
+    return ends_leg[to_size(rod.position(place))];
+  };
+  const auto is_uneven = [&](Index place) {
+    const double ratio = length(place) / length(place - 1);
+    return ratio > kMost || ratio * kMost < 1.0;
+  };
+  for (Index place = 1; place < last; ++place) {
+    if (ends(place - 1) && is_uneven(place)) ends(place) = true;
+  }
+  for (Index place = last - 1; place > 0; --place) {
+    if (ends(place + 1) && is_uneven(place)) ends(place) = true;
+  }
 }
 
 /// Gives joints their rotations. The rods of a rigid joint follow one; each other node of a rod has
@@ -215,11 +241,13 @@ void find_joints(const scenario::Scene& scene, Model& model) {
   Rotations rotations(scene, model);
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
     RodMesh& rod = model.rods[i];
-    const RodPoints points = points_of(scene, rod, model);
+    RodPoints points = points_of(scene, rod, model);
+    end_uneven_legs(rod, points.ends_leg);
     Leg leg;
+    // The last leg of a ring ends where the first one starts.
     for (Index place = 0; place <= rod.num_edges(); ++place) {
-      if (!points.ends_leg[to_size(place)]) continue;
-      const Index rotation = rotations.of(i, place, points);
+      if (!points.ends_leg[to_size(rod.position(place))]) continue;
+      const Index rotation = rotations.of(i, rod.position(place), points);
       if (place > 0) {
         leg.last = place;
         leg.end.rotation = rotation;
@@ -245,6 +273,9 @@ void find_joints(const scenario::Scene& scene, Model& model) {
   const double length = model.dofs.length();
   model.dofs = DofMap(model.dimension, model.num_nodes, edge_starts(model), rotations.nodes());
   model.dofs.set_length(length);
+  for (const RodMesh& rod : model.rods) {
+    if (rod.closed) model.dofs.close(rod.nodes);
+  }
   draw_joints(model);
   for (Vector* v : {&model.initial_positions, &model.reference_positions, &model.initial_velocities,
                     &model.mass.lumped, &model.damping, &model.gravity_force, &model.dead_force}) {

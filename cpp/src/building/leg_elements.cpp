@@ -37,7 +37,7 @@ class LegBuilder {
   [[nodiscard]] bool has_natural() const { return !rod_.natural_curvature.empty(); }
   /// Natural curvature [1/m] by node.
   [[nodiscard]] auto natural() const {
-    return [this](Index place) { return rod_.natural_curvature[to_size(place)]; };
+    return [this](Index place) { return natural_in_leg(leg_, rod_, place); };
   }
   [[nodiscard]] Vec2 edge(Index number) const { return reference_edge(rod_, number, model_); }
 

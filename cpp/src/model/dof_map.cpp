@@ -35,8 +35,11 @@ Index DofMap::node_of(Index dof) const {
   return what.kind == DofKind::Position ? what.owner : starts_[to_size(what.owner)];
 }
 
-void DofMap::close(Index first_node, Index last_node) {
-  rings_.push_back({first_node, last_node});
+void DofMap::close(const std::vector<Index>& nodes) {
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    if (nodes[i] != nodes[i - 1] + 1) return;
+  }
+  rings_.push_back({nodes.front(), nodes.back()});
   number_free();
 }
 
@@ -58,18 +61,22 @@ void DofMap::number_free() {
   const auto number_positions = [&](Index node) {
     for (int c = 0; c < dimension_; ++c) number(position(node, c));
   };
-  // The rotations and angles of each node, in this order.
-  std::vector<std::vector<Index>> others(to_size(num_nodes_));
+  std::vector<std::vector<Index>> rotations(to_size(num_nodes_));
   for (Index i = 0; i < num_rotations(); ++i) {
-    others[to_size(rotation_nodes_[to_size(i)])].push_back(rotation(i));
+    rotations[to_size(rotation_nodes_[to_size(i)])].push_back(rotation(i));
   }
-  for (Index i = 0; i < num_angles(); ++i) others[to_size(starts_[to_size(i)])].push_back(angle(i));
+  std::vector<std::vector<Index>> angles(to_size(num_nodes_));
+  for (Index i = 0; i < num_angles(); ++i) angles[to_size(starts_[to_size(i)])].push_back(angle(i));
+  const auto number_node = [&](Index node) {
+    number_positions(node);
+    for (const Index dof : rotations[to_size(node)]) number(dof);
+  };
   for (Index node = 0; node < num_nodes_; ++node) {
     const auto begins = [node](const Ring& ring) { return ring.first_node == node; };
-    if (std::none_of(rings_.begin(), rings_.end(), begins)) number_positions(node);
-    for (const Index dof : others[to_size(node)]) number(dof);
+    if (std::none_of(rings_.begin(), rings_.end(), begins)) number_node(node);
+    for (const Index dof : angles[to_size(node)]) number(dof);
     for (const Ring& ring : rings_) {
-      if (ring.last_node == node) number_positions(ring.first_node);
+      if (ring.last_node == node) number_node(ring.first_node);
     }
   }
 }

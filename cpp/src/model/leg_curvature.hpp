@@ -5,8 +5,14 @@
 #include "der/core/index.hpp"
 #include "der/model/leg.hpp"
 #include "der/model/model.hpp"
+#include "model/curvature_jump.hpp"
 
 namespace der {
+
+/// Natural curvature [1/m] of the scene at a place of a leg, at an end that of the leg's side.
+inline double natural_in_leg(const Leg& leg, const RodMesh& rod, Index place) {
+  return planar_curvature_beside(rod, place, place == leg.first);
+}
 
 /// The turning angle [rad] number `angle` next to an end of a leg that a curvature makes, along the
 /// element from that end on. `C`: its compliance (`end_compliance`); `curvature_at(place)` [1/m] is

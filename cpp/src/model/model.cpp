@@ -47,6 +47,7 @@ std::array<Index, 4> RodMesh::edge_dofs(Index edge, const Model& model) const {
 }
 
 Index RodMesh::rotation_at(Index place) const {
+  place = position(place);
   for (const Leg& leg : legs) {
     if (leg.first == place && leg.start.rotation >= 0) return leg.start.rotation;
     if (leg.last == place && leg.end.rotation >= 0) return leg.end.rotation;

@@ -37,7 +37,7 @@ class EachLegField : public RodField {
     std::vector<double> places;
     for (const Leg& leg : rod.legs) {
       for (Index place = leg.first; place <= leg.last; ++place) {
-        places.push_back(rod.arc_length[to_size(place)]);
+        places.push_back(rod.arc_length_at(place));
       }
     }
     return places;

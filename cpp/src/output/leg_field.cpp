@@ -130,9 +130,8 @@ class LegReader {
       const Vec2 edge = reference_edge(rod, from_start ? leg.first : leg.last - 1, model);
       end.natural = angle_between({std::cos(direction), std::sin(direction)}, edge);
       if (rod.natural_curvature.empty()) continue;
-      end.natural = turn_in_end_cell(leg, from_start, C, 0, [&](Index place) {
-        return rod.natural_curvature[to_size(place)];
-      });
+      end.natural = turn_in_end_cell(leg, from_start, C, 0,
+                                     [&](Index place) { return natural_in_leg(leg, rod, place); });
     }
   }
 
@@ -314,8 +313,8 @@ class LegReader {
     continue_to_ends(leg_, rod_, drawn_);
     natural_ = drawn_;
     if (rod_.natural_curvature.empty()) return;
-    const auto first = rod_.natural_curvature.begin() + leg_.first;
-    natural_.assign(first, first + last + 1);
+    for (Index k = 0; k <= last; ++k)
+      natural_[to_size(k)] = natural_in_leg(leg_, rod_, k + leg_.first);
   }
 
   [[nodiscard]] double length(Index edge) const {
@@ -350,7 +349,7 @@ class LegReader {
   /// Curvature that actuations give the rod at a node, on the side of the leg [1/m].
   [[nodiscard]] double actuated(Index node, const Model& model, const State& state) const {
     if (!actuated_.is_strained()) return 0.0;
-    const double s = rod_.arc_length[to_size(leg_.first + node)];
+    const double s = rod_.arc_length_at(leg_.first + node);
     return actuated_.strains(s, node == leg_.num_cells(), model, state)[0];
   }
   /// By how much the tangent at the middle of an edge is turned from the edge: of an outermost one,
@@ -463,6 +462,19 @@ class LegField : public EachLegField {
         break;
     }
     return leg.slope(node, model, state);
+  }
+  /// The slope is what is interpolated, so that tangents stay of length 1.
+  [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
+                                   const State& state) const override {
+    if (quantity_ != LegQuantity::TangentX && quantity_ != LegQuantity::TangentY) {
+      return RodField::interpolate(weights, model, state);
+    }
+    double slope = 0.0;
+    for (const auto& [number, weight] : weights) {
+      const auto& [leg, node] = places()[number];
+      slope += weight * legs_[leg].slope(node, model, state);
+    }
+    return quantity_ == LegQuantity::TangentX ? std::cos(slope) : std::sin(slope);
   }
 
  private:

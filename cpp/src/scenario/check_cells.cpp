@@ -157,11 +157,18 @@ class CellCheck {
   }
   void warn(const TurningPlace& a, const TurningPlace& b, const char* where, double edges) {
     const double nodes = std::ceil(edges) + 1.0;
+    // Straight planar rods are legs between joints in a scene that has any, and tell the two apart.
+    const bool may_have_legs = model_ == ModelChoice::Planar && !context_.scene.in_space &&
+                               context_.scene.given_rods[static_cast<std::size_t>(rod_)].nodes;
     context_.scene.warnings.push_back(fmt::format(
         "{} and {} act on rod '{}' within {:.3g} m, and {}: neither sees how the other bends the "
         "rod there. The error of the solution is then of first order in the length of the edges. "
-        "Put both at one place{}",
+        "Put both at one place{}{}",
         a.what, b.what, name_, b.at - a.at, where,
+        may_have_legs
+            ? fmt::format(", write 'joints: [{{name: here, of: [{{rod: {}, at: {:.6g}}}]}}]'",
+                          name_, a.at)
+            : std::string(),
         nodes <= kMostNodes ? fmt::format(", or give the rod about {:g} nodes", nodes)
                             : std::string()));
   }

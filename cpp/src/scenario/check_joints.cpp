@@ -44,6 +44,11 @@ class JointCheck {
       members.push_back(*member);
     }
     if (!meet(number, members)) return;
+    if (joint.kind != JointKind::Rigid && members.size() < 2) {
+      report(joint_path(number) / "kind",
+             fmt::format("{} joins rods, and there is one: name another in 'of', or remove 'kind'",
+                         in_words(joint.kind)));
+    }
     check_sides(number, members);
     for (std::size_t k = 0; k < members.size(); ++k) enter(number, members, k);
   }
@@ -265,10 +270,9 @@ class JointedSceneCheck {
     }
   }
   void check_rod(const Rod& rod, const Path& path) {
-    if (rod.closed) lacks(path / "closed", "a closed rod");
-    if (context_.diagnostics.dimension() == 3 && damping_of(rod).any()) {
-      lacks(path, "internal damping in space");
-    }
+    if (context_.diagnostics.dimension() != 3) return;
+    if (rod.closed) lacks(path / "closed", "a closed rod in space");
+    if (damping_of(rod).any()) lacks(path, "internal damping in space");
   }
   void lacks(const Path& where, const std::string& what) {
     report(where, fmt::format("this version does not have {} in a scene with joints", what));

@@ -21,10 +21,10 @@ Format<HingeSpring> spring_format() {
 
 Format<Joint> joint_format() {
   return mapping(
-      Table<Joint>("joint", "Joins rods that meet at a point.")
+      Table<Joint>("joint", "Joins rods that meet at a point, or names a point of one rod.")
           .required("name", &Joint::name, name(), "Name of the joint.")
-          .required("of", &Joint::of, list_of(member_format(), 2),
-                    "The rods that meet, each at its place.")
+          .required("of", &Joint::of, list_of(member_format(), 1),
+                    "The rods that meet, each at its place; one alone has a joint there.")
           .optional(
               "kind", &Joint::kind,
               choice<JointKind>({{{"rigid", "the rods keep the angles between them, as if welded"},

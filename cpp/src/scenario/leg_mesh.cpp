@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <variant>
 
 #include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
+#include "scenario/resampled_rod.hpp"
 #include "scenario/suggestion.hpp"
 
 namespace der::scenario {
@@ -102,14 +104,15 @@ std::vector<int> share_out(int cells, const std::vector<double>& lengths, double
     counts.push_back(std::max(1, static_cast<int>(cells * (length / whole) * (1.0 - 1e-12))));
     given += counts.back();
   }
+  constexpr double kLonger = 1.0 + 1e-9;  // of equal legs the first has one more, not a rounded one
   const auto cell = [&](std::size_t leg, int more) { return lengths[leg] / (counts[leg] + more); };
   for (; given != cells; given += given < cells ? 1 : -1) {
     std::size_t chosen = lengths.size();
     for (std::size_t leg = 0; leg < lengths.size(); ++leg) {
       if (given > cells && counts[leg] == 1) continue;
       const bool better =
-          chosen == lengths.size() ||
-          (given < cells ? cell(leg, 0) > cell(chosen, 0) : cell(leg, -1) < cell(chosen, -1));
+          chosen == lengths.size() || (given < cells ? cell(leg, 0) > kLonger * cell(chosen, 0)
+                                                     : cell(leg, -1) * kLonger < cell(chosen, -1));
       if (better) chosen = leg;
     }
     counts[chosen] += given < cells ? 1 : -1;
@@ -117,96 +120,97 @@ std::vector<int> share_out(int cells, const std::vector<double>& lengths, double
   return counts;
 }
 
-/// A list with a value for each node of an even rod, linear in between.
-class EvenList {
- public:
-  EvenList(int nodes, double length) : cells_(nodes - 1), length_(length) {}
-
-  template <class Item, class Number>
-  [[nodiscard]] double value(const std::vector<Item>& list, double s, const Number& number) const {
-    const double place = s / length_ * cells_;
-    const int before = std::clamp(static_cast<int>(place), 0, cells_ - 1);
-    const double share = place - before;
-    const auto at = [&](int k) { return number(list[static_cast<std::size_t>(k)]); };
-    return (1.0 - share) * at(before) + share * at(before + 1);
-  }
-  [[nodiscard]] double value(const std::vector<double>& list, double s) const {
-    return value(list, s, [](double each) { return each; });
-  }
-
- private:
-  int cells_;
-  double length_;
-};
-
 /// Places the nodes of a straight rod evenly on each leg: as many cells as the scene's `nodes` say,
 /// each cut into as many as `subdivide` says.
-void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, double length) {
+void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends,
+                 const std::vector<int>& jumps, double length) {
   std::vector<double> bounds{0.0};
   bounds.insert(bounds.end(), ends.begin(), ends.end());
   bounds.push_back(length);
   std::vector<double> lengths;
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) lengths.push_back(bounds[i + 1] - bounds[i]);
-  std::vector<int> cells = share_out(*text.nodes - 1, lengths, length);
-  const int factor = text.subdivide.value_or(1);
-  for (int& count : cells) count *= factor;
-  rod.points.resize(static_cast<std::size_t>((*text.nodes - 1) * factor) + 1, rod.points.back());
-  const EvenList even(text.nodes.value(), length);
-  const std::vector<Components> velocities = rod.initial_velocity;
-  rod.initial_velocity.resize(velocities.empty() ? 0 : rod.points.size(),
-                              velocities.empty() ? Components() : velocities.back());
-  auto* curvatures = std::get_if<std::vector<double>>(&rod.natural_curvature);
-  const std::vector<double> natural = curvatures != nullptr ? *curvatures : std::vector<double>();
-  if (curvatures != nullptr) curvatures->resize(rod.points.size(), natural.back());
-  auto* pairs = std::get_if<std::vector<CurvaturePair>>(&rod.natural_curvature);
-  const auto natural_pairs = pairs != nullptr ? *pairs : std::vector<CurvaturePair>();
-  if (pairs != nullptr) pairs->resize(rod.points.size(), natural_pairs.back());
-  auto* twists = std::get_if<std::vector<double>>(&rod.natural_twist);
-  const std::vector<double> natural_twist = twists != nullptr ? *twists : std::vector<double>();
-  if (twists != nullptr) twists->resize(rod.points.size(), natural_twist.back());
-  std::size_t node = 0;
+  const int given = *text.nodes - 1;
+  std::vector<int> cells = share_out(given, lengths, length);
+  std::vector<OldPlace> nodes{{0, 0.0}};
+  rod.points.resize(1);
   for (std::size_t leg = 0; leg < cells.size(); ++leg) {
-    for (int k = 1; k <= cells[leg]; ++k) {
-      const double s = bounds[leg] + lengths[leg] * k / cells[leg];
-      Components& point = rod.points[++node];
-      for (std::size_t c = 0; c < point.size(); ++c) {
-        point[c] = text.from[c] + s / length * (text.to[c] - text.from[c]);
-      }
-      if (curvatures != nullptr) (*curvatures)[node] = even.value(natural, s);
-      if (twists != nullptr) (*twists)[node] = even.value(natural_twist, s);
-      if (pairs != nullptr) {
-        (*pairs)[node] = {
-            even.value(natural_pairs, s, [](const CurvaturePair& each) { return each.first; }),
-            even.value(natural_pairs, s, [](const CurvaturePair& each) { return each.second; })};
-      }
-      for (std::size_t c = 0; c < point.size() && !velocities.empty(); ++c) {
-        rod.initial_velocity[node][c] =
-            even.value(velocities, s, [c](const Components& each) { return each[c]; });
-      }
+    const int count = cells[leg] * text.subdivide.value_or(1);
+    for (int k = 1; k <= count; ++k) {
+      const double share = (bounds[leg] + lengths[leg] * k / count) / length;
+      const int before = std::clamp(static_cast<int>(share * given), 0, given - 1);
+      nodes.push_back({before, share * given - before});
+      Components point = text.from;
+      for (std::size_t c = 0; c < point.size(); ++c) point[c] += share * (text.to[c] - point[c]);
+      rod.points.push_back(std::move(point));
     }
   }
   rod.points.back() = text.to;
+  resample_lists(nodes, jumps, rod);
 }
 
-void place_leg_ends(CheckContext& context, std::size_t number, const Places& places) {
-  const Path path{"rods", static_cast<int>(number)};
-  std::optional<RestLine>& line = context.lines[number];
+/// Places the nodes of a straight rod so that legs end where anything acts; none: reports that it
+/// has too few.
+std::optional<RestLine> mesh_straight(CheckContext& context, std::size_t number,
+                                      const Places& places) {
   RodText& text = context.scene.given_rods[number];
   Rod& rod = context.scene.rods[number];
-  if (!text.nodes) return;  // those of a rod drawn by points stay
-  const std::vector<double> ends = leg_ends(*line, places);
+  const RestLine& line = *context.lines[number];
+  Places all = places;
+  // The two sides of a jump are smooth, each by itself.
+  const std::vector<int> jumps = natural_jumps(rod, line.length() / (*text.nodes - 1));
+  std::vector<Location> at_jumps;
+  for (const int node : jumps) {
+    at_jumps.emplace_back().kind = Location::Kind::Node;
+    at_jumps.back().node = node;
+  }
+  for (Location& at : at_jumps) all.push_back({&at, Role::Acts});
+  const std::vector<double> ends = leg_ends(line, all);
   const int least = static_cast<int>(ends.size()) + 2;
   if (*text.nodes < least) {
     context.diagnostics.add(
-        path / "nodes",
+        Path{"rods", static_cast<int>(number)} / "nodes",
         fmt::format("things act at {} places inside the rod, and it takes a node at each: write "
                     "{} or more",
                     ends.size(), least));
-    line.reset();
-    return;
+    return std::nullopt;
   }
-  place_nodes(text, rod, ends, line->length());
-  line = RestLine(rod.points, false, rod.rest_length);
+  place_nodes(text, rod, ends, jumps, line.length());
+  return RestLine(rod.points, false, rod.rest_length);
+}
+
+/// Where a part of a rod begins or ends.
+struct Border {
+  double* value = nullptr;  ///< [m]
+  std::string rod;
+  Role role = Role::IsRead;
+  Location at{};
+};
+
+/// Those of actuations and of loads along rods. Where an actuated curvature begins or ends it
+/// jumps.
+std::deque<Border> borders_of(SceneText& scene) {
+  std::deque<Border> borders;
+  const auto enter = [&](const std::string& rod, double& value, Role role) {
+    Border& border = borders.emplace_back(Border{&value, rod, role});
+    border.at.kind = Location::Kind::ArcLength;
+    border.at.arc_length = value;
+  };
+  for (Actuation& actuation : scene.actuations) {
+    const Role role = actuation.what == Actuated::Length ? Role::IsRead : Role::Acts;
+    enter(actuation.rod, actuation.from, role);
+    enter(actuation.rod, actuation.to, role);
+  }
+  for (Load& load : scene.loads) {
+    std::visit(
+        [&](auto& what) {
+          if constexpr (std::is_base_of_v<OnPart, std::decay_t<decltype(what)>>) {
+            enter(what.rod, what.from, Role::IsRead);
+            enter(what.rod, what.to, Role::IsRead);
+          }
+        },
+        load.what);
+  }
+  return borders;
 }
 
 /// Gives all that stands on a joint the place of the joint's first member that bends, or else of
@@ -310,29 +314,22 @@ void place_leg_ends(CheckContext& context) {
     if (rod != context.rods.end())
       places[static_cast<std::size_t>(rod->second)].push_back({&at, role});
   });
-  // Where an actuated curvature begins or ends it jumps.
-  std::vector<std::pair<double*, Location>> borders;
-  for (Actuation& actuation : scene.actuations) {
-    if (actuation.what == Actuated::Length) continue;
-    for (double* border : {&actuation.from, &actuation.to}) {
-      Location at;
-      at.kind = Location::Kind::ArcLength;
-      at.arc_length = *border;
-      borders.emplace_back(border, at);
-    }
-  }
-  for (std::size_t i = 0; i < borders.size(); ++i) {
-    const auto rod = context.rods.find(scene.actuations[i / 2].rod);
-    if (rod != context.rods.end()) {
-      places[static_cast<std::size_t>(rod->second)].push_back({&borders[i].second, Role::Acts});
-    }
+  std::deque<Border> borders = borders_of(scene);
+  for (Border& border : borders) {
+    const auto rod = context.rods.find(border.rod);
+    if (rod == context.rods.end()) continue;
+    places[static_cast<std::size_t>(rod->second)].push_back({&border.at, border.role});
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (context.lines[i]) place_leg_ends(context, i, places[i]);
+    std::optional<RestLine>& line = context.lines[i];
+    if (line && scene.given_rods[i].nodes) line = mesh_straight(context, i, places[i]);
   }
-  for (auto& [border, at] : borders) {
-    if (at.kind == Location::Kind::ArcLength) *border = at.arc_length;
-    if (at.kind == Location::Kind::Start) *border = 0.0;
+  for (const Border& border : borders) {
+    const auto rod = context.rods.find(border.rod);
+    if (rod == context.rods.end()) continue;
+    if (const auto& line = context.lines[static_cast<std::size_t>(rod->second)]) {
+      *border.value = line->arc_length_of(border.at);
+    }
   }
 }
 

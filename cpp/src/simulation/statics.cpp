@@ -75,9 +75,10 @@ EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& b
   options.newton.step_tolerance *= 0.01;
   options.leave_saddles = leave_saddles;
   options.beat = beat;
-  approach(options, found);
+  const int saddles_left = approach(options, found);
   EquilibriumReport report = find_equilibrium(model_, *assembler_, *solver_.solver, options, found);
   counters_.newton_iterations += report.newton_iterations;
+  report.saddles_left += saddles_left;
   if (report.failed) {
     throw NotConvergedError(
         fmt::format("no {}equilibrium found: {}. {}",
@@ -107,16 +108,17 @@ struct Simulation::SecondOrder {
   const Assembler assembler;
 };
 
-void Simulation::approach(const EquilibriumOptions& options, State& found) {
-  if (!has_arcs(model_)) return;
+int Simulation::approach(const EquilibriumOptions& options, State& found) {
+  if (!has_arcs(model_)) return 0;
   if (!second_order_) second_order_ = std::make_shared<SecondOrder>(scenario_.scene());
   State near = found;
   const EquilibriumReport report = find_equilibrium(second_order_->model, second_order_->assembler,
                                                     *second_order_->solver, options, near);
   counters_.newton_iterations += report.newton_iterations;
-  if (report.failed) return;
+  if (report.failed) return 0;
   for (Ramp& ramp : near.ramps) ramp.from = ramp.to;
   found = std::move(near);
+  return report.saddles_left;
 }
 
 std::vector<Mode> Simulation::modes(int count, const CancelCallback& beat) {

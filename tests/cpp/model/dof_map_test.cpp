@@ -42,7 +42,7 @@ TEST_CASE("free degrees of freedom are eliminated node by node, angles after the
 TEST_CASE("the first node of a ring is eliminated after its last one, between two open rods") {
   // A node; a ring of three nodes and three edges; a node.
   DofMap map{2, 5, {1, 2, 3}};
-  map.close(1, 3);
+  map.close({1, 2, 3});
   CHECK(map.free() == std::vector<Index>{0, 1, 10, 4, 5, 11, 6, 7, 12, 2, 3, 8, 9});
   map.hold({3, 6, 11});
   CHECK(map.free() == std::vector<Index>{0, 1, 10, 4, 5, 7, 12, 2, 8, 9});

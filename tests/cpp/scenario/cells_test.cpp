@@ -41,7 +41,9 @@ TEST_CASE("cells: a moment near a spring is warned of, with what to do") {
   REQUIRE(warnings.size() == 1);
   CHECK(
       contains(warnings[0], "supports.0.spring and loads.0.moment act on rod 'beam' within 0.04"));
-  CHECK(contains(warnings[0], "Put both at one place, or give the rod about 26 nodes"));
+  CHECK(contains(warnings[0],
+                 "Put both at one place, write 'joints: [{name: here, of: [{rod: beam, at: 0}]}]', "
+                 "or give the rod about 26 nodes"));
 }
 
 TEST_CASE("cells: at one place, in the middle of an edge and in other cells nothing is warned of") {

@@ -76,8 +76,9 @@ class DofMap {
   /// Its node, that of its joint, or the one at which its edge begins.
   [[nodiscard]] Index node_of(Index dof) const;
 
-  /// Says that the nodes from `first_node` to `last_node` are those of a ring.
-  void close(Index first_node, Index last_node);
+  /// Says that these are the nodes of a ring. Where it shares some with rods before it, they do not
+  /// follow one another, and their order stays.
+  void close(const std::vector<Index>& nodes);
   /// Marks the `held` ones as prescribed by supports and renumbers the free ones.
   void hold(const std::vector<Index>& held);
   /// All free ones, in the order of elimination.

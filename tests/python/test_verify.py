@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import warnings
 from fractions import Fraction
 from types import SimpleNamespace
 
@@ -323,6 +324,56 @@ def test_smooth_curves_have_no_jumps_of_the_curvature():
     # An arc has none either where the points are rounded.
     rounded = np.round(crook(20)[20:], 7)
     assert find_curvature_jumps(rounded) == []
+
+
+def test_narrow_peaks_have_no_certain_jumps():
+    """Their flanks look like jumps of the curvature. Other curves through the points are smooth."""
+    share = np.linspace(0.0, 1.0, 20)
+    phase = 2.0 * np.pi * share
+    peak = np.column_stack([np.sin(0.7 * phase + 3.0), 0.7 * np.sin(1.2 * phase)])
+    assert find_curvature_jumps(peak)
+    assert find_curvature_jumps(peak, certain=True) == []
+    differ = np.abs(resample(peak, Fraction(2)) - resample(peak, Fraction(2), other_curve=True))
+    assert differ.max() > 1e-3
+    for edges in (5, 10):
+        assert find_curvature_jumps(crook(edges), certain=True) == [edges]
+
+
+def bump(elements):
+    """A curve that inflects behind its first turn: the points do not tell whether that is a corner."""
+    x = np.linspace(0.0, 1.0, elements + 1)
+    return np.column_stack([x, 0.35 * np.exp(-((x - 0.45) ** 2) / (2 * 0.25**2))])
+
+
+def test_the_first_turn_before_an_inflection_is_no_certain_corner():
+    points = bump(12)
+    assert find_corners(points) == [1]
+    assert find_corners(points, certain=True) == []
+    ell = np.array([[0.0, 0.0], [0.5, 0.0], [0.8, 0.3], [1.1, 0.6], [1.4, 0.9]])
+    assert find_corners(ell, certain=True) == [1]
+    zigzag = np.column_stack([np.arange(6.0), 0.2 * (np.arange(6) % 2)])
+    assert find_corners(zigzag, certain=True) == [1, 2, 3, 4]
+
+
+def test_bars_hold_where_points_do_not_tell_corners_from_curves(arm):
+    """Without the other curve, the curvature was 0.01 of what it is beyond its bar."""
+    curvature = {"rod": "arm", "at": {"node": 1}, "quantity": "curvature"}
+
+    def scene(factor):
+        rod = {key: arm["rods"][0][key] for key in ("name", "cross_section")}
+        probe = curvature | {"at": {"node": factor}}
+        return {
+            "rods": [rod | {"points": bump(12 * factor).tolist()}],
+            "supports": [{"rod": "arm", "at": "end", "clamp": True}],
+            "analysis": "static",
+            "output": {"probes": {"curvature": probe}},
+        }
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", der.DerWarning)
+        found = der.verify(scene(1))["curvature"]
+        truth = der.run(scene(32)).probes["curvature"].summary["final"]
+    assert abs(found.value - truth) <= found.error_bar
 
 
 def test_bars_hold_where_the_curvature_jumps(arm):

@@ -35,26 +35,36 @@ _DEGREE = 5
 _OTHER_DEGREE = 7
 
 
-def find_corners(points: Array) -> list[int]:
+def find_corners(points: Array, *, certain: bool = False) -> list[int]:
     """Return the inner nodes at which a line has a corner instead of being a sampled curve.
 
     A corner is a turn of more than 60 degrees, or one of more than 0.1 that stands alone: three
     times what the line turns the same way at the nodes before and after. In a curve that is sampled
     finely enough to be computed with, neighbouring turns are alike (`model/corner.hpp`).
+
+    Beside an end of the line, one of these two nodes is missing. A turn may then stand alone because
+    the curve has an inflection behind it. It is a `certain` corner if it is also three times what
+    the next two turns lead to.
     """
     size, axes = _turns(points)
-    padded = np.pad(size[:, None] * axes, ((1, 1), (0, 0)))
+    turns = size[:, None] * axes
+    padded = np.pad(turns, ((1, 1), (0, 0)))
+    if certain and len(turns) > 2:
+        padded[0], padded[-1] = 2.0 * turns[[1, -2]] - turns[[2, -3]]
     beside = np.maximum(np.sum(axes * padded[:-2], axis=1), np.sum(axes * padded[2:], axis=1))
     alone = (size > _LEAST_CORNER) & (size > _ISOLATED_TURN * np.maximum(beside, 0.0))
     return [int(i) + 1 for i in np.flatnonzero(alone | (size > _SHARP_TURN))]
 
 
-def find_curvature_jumps(points: Array) -> list[int]:
+def find_curvature_jumps(points: Array, *, certain: bool = False) -> list[int]:
     """Return the inner nodes, corners apart, at which the curvature of a line jumps.
 
     On either side of a node the curvature is that of the two nodes next to it, extrapolated. It
     jumps if the two values differ by more than twice what the extrapolations change and what the
     turn at the node differs from that of the two sides, all added (`model/curvature_jump.hpp`).
+
+    The flanks of a narrow peak may look like this, too. A jump is `certain` if the curvature of
+    the third node on either side, where there is one, is as that of the first two.
     """
     beside = _BESIDE_JUMP
     inner = len(points) - 2
@@ -72,7 +82,11 @@ def find_curvature_jumps(points: Array) -> list[int]:
         near, far = here + step, here + 2 * step
         reach = (nodes[here] - places[near]) / (places[near] - places[far])
         change = reach[:, None] * (curvature[near] - curvature[far])
-        return curvature[near] + change, np.linalg.norm(change, axis=1)
+        size = np.linalg.norm(change, axis=1)
+        if certain:
+            third = np.clip(far + step, 0, inner - 1)
+            size += np.linalg.norm(curvature[far] - curvature[third], axis=1)
+        return curvature[near] + change, size
 
     before, change_before = extrapolated(-1)
     after, change_after = extrapolated(1)
@@ -114,8 +128,9 @@ def resample(
     closed
         Whether the first node follows the last one.
     other_curve
-        Whether to take splines of another degree. They differ from the usual ones about as much as
-        these do from the smooth curve that the points sample.
+        Whether to take splines of another degree, through corners and jumps of the curvature that
+        are not certain. They differ from the usual ones about as much as these do from the smooth
+        curve that the points sample.
 
     Raises
     ------
@@ -127,8 +142,9 @@ def resample(
     beyond = _BESIDE_JUMP + 1 if closed else 0  # nodes behind the ends of a ring that tell of them
     around = np.take(points, np.arange(-beyond, count + beyond), axis=0, mode="wrap")
 
-    def places(find: Callable[[Array], list[int]]) -> list[int]:
-        return [i - beyond for i in find(around) if beyond <= i < count + beyond]
+    def places(find: Callable[..., list[int]]) -> list[int]:
+        found = find(around, certain=other_curve)
+        return [i - beyond for i in found if beyond <= i < count + beyond]
 
     corners = places(find_corners)
     step = factor.denominator

@@ -554,7 +554,7 @@ def test_failed_run_on_other_curves_is_flagged_with_a_note(half_circle, monkeypa
         outcomes = original(self, tasks, **options)
         error = der.NotConvergedError("no convergence")
         return {
-            key: type(outcome)(None, error, 0.0) if key == ("drawing", 1) else outcome
+            key: type(outcome)(None, error, 0.0) if key == ("drawing", 2) else outcome
             for key, outcome in outcomes.items()
         }
 

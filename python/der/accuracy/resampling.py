@@ -28,6 +28,11 @@ _LEAST_SHARE = 0.15
 #: Nodes on either side of a jump, of the same leg, from which it is known.
 _BESIDE_JUMP = 2
 
+#: Points leave a curvature open that is uncertain by more than this share of the largest.
+_OPEN_CURVATURE = 0.25
+#: Elements for one, on which that is seen.
+_WITHIN_ELEMENT = 4
+
 #: Degree of the splines through points: the error of their curvature is of fourth order in the
 #: distance of the points, that of a mesh of second.
 _DEGREE = 5
@@ -178,6 +183,32 @@ def resample(
     ]
     refined = np.vstack([*(leg[:-1] for leg in legs), line[-1:]])
     return np.roll(refined[:-1], first * factor.numerator, axis=0) if closed else refined
+
+
+def unresolved_nodes(points: Array, *, closed: bool = False) -> list[int]:
+    """Return the nodes beside which points do not tell how their curve bends.
+
+    There the usual curve through them and the other one (`resample`) differ in curvature by more
+    than a quarter of the largest. Certain corners do not count.
+    """
+    factor = _WITHIN_ELEMENT
+    curvatures, turns = [], []
+    for other in (False, True):
+        line = resample(points, Fraction(factor), closed=closed, other_curve=other)
+        if closed:
+            line = np.vstack([line[-1:], line, line[:1]])
+        size, axes = _turns(line)
+        lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
+        curvatures.append(2.0 * size[:, None] * axes / (lengths[:-1] + lengths[1:])[:, None])
+        turns.append(size)
+    nodes = np.arange(len(turns[0])) + (0 if closed else 1)
+    corners = np.array(find_corners(points, certain=True), dtype=int)
+    smooth = ~np.isin(nodes, factor * corners)
+    apart = np.linalg.norm(curvatures[0] - curvatures[1], axis=1)
+    largest = np.max(np.linalg.norm(curvatures[1], axis=1), where=smooth, initial=0.0)
+    bends = np.maximum(*turns) > _NO_TURN
+    found = np.flatnonzero(smooth & bends & (apart > _OPEN_CURVATURE * largest))
+    return sorted({int(node) for node in np.rint(nodes[found] / factor) % len(points)})
 
 
 def _refine_leg(

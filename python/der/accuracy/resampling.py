@@ -47,9 +47,9 @@ def find_corners(points: Array, *, certain: bool = False) -> list[int]:
     times what the line turns the same way at the nodes before and after. In a curve that is sampled
     finely enough to be computed with, neighbouring turns are alike (`model/corner.hpp`).
 
-    Beside an end of the line, one of these two nodes is missing. A turn may then stand alone because
-    the curve has an inflection behind it. It is a `certain` corner if it is also three times what
-    the next two turns lead to.
+    Beside an end of the line, one of these two nodes is missing. A turn may then stand alone
+    because the curve has an inflection behind it. It is a `certain` corner if it is also three
+    times what the next two turns lead to.
     """
     size, axes = _turns(points)
     turns = size[:, None] * axes

@@ -12,8 +12,8 @@ from der.accuracy.cross_check import CROSS_CHECK_STEPPER, cross_check_halvings, 
 from der.accuracy.refinement import (
     count_nodes,
     curves_between_points,
-    unresolved_curves,
     rods_that_cannot_be_refined,
+    unresolved_curves,
     with_elements,
 )
 from der.accuracy.time_levels import TimeLevels, stepper_of

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-import warnings
 from fractions import Fraction
 from types import SimpleNamespace
 

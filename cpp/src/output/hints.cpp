@@ -28,8 +28,9 @@ std::string about(const std::vector<MotionKink>& kinks, int order) {
   return fmt::format(
       ". Supports jump to another velocity where their tables have kinks ({}). That starts waves "
       "of every length, and the steps resolve those that move nodes. For fewer steps, write "
-      "'smooth: true' in these tables{}, or choose a larger tolerance",
-      places, order < kHighOrder ? ", and 'integrator: sdirk5' under time" : "");
+      "'smooth: true' in these tables{}, or choose a larger tolerance, or equal steps (time.step) "
+      "of tr_bdf2 or sdirk5, which damp the waves that they do not resolve",
+      places, order < kHighOrder ? " and 'integrator: sdirk5' under time" : "");
 }
 
 }  // namespace

@@ -94,9 +94,9 @@ def test_held_nodes_return_to_their_place(simulation):
 @pytest.mark.parametrize("arrives_by", ["equilibrium", "step", ""])
 def test_supports_arrive_before_a_shape_is_written(swing, arrives_by):
     """Whatever is written, prescribe moves a support during the next step."""
-    swing["supports"][0] = {"rod": "swing", "at": "start", "clamp": True, "prescribe": {"x": 0}}
+    swing["supports"][0] = {"rod": "arm", "at": "start", "clamp": True, "prescribe": {"x": 0}}
     simulation = der.Simulation(swing)
-    shape = simulation.positions + [0.3, 0.0]
+    shape = simulation.positions + np.array([0.3, 0.0])
     simulation.prescribe(0, x=0.3)
     if arrives_by:
         getattr(simulation, arrives_by)()

@@ -219,7 +219,8 @@ void bind_arrays(PySimulationClass& cls) {
       cls, "positions", &state_view<&State::positions>,
       "Node positions [m], shape (nodes, dim): a live, writable view of the engine's memory.\n\n"
       "It follows every step, and stays valid as long as it is referenced. Held components are "
-      "put back\nby the next step. Copy it to keep values.");
+      "put back\nby the next step, to where their supports are then: let these arrive before you "
+      "write. Copy it to\nkeep values.");
   def_writable_view(
       cls, "velocities", &state_view<&State::velocities>,
       "Node velocities [m/s], shape (nodes, dim): a live, writable view, as `positions`.");

@@ -118,6 +118,9 @@ def test_a_hint_names_the_kinks_of_supports_that_start_waves(swing, course):
     hint = str(caught[0].message)
     assert ("(supports.0.prescribe.x at 0 s)" in hint) == (course == "kinked")
     assert ("'smooth: true'" in hint) == (course == "kinked")
+    assert ("equal steps (time.step) of tr_bdf2 or sdirk5" in hint) == (course == "kinked")
+    if course == "kinked":
+        assert "'integrator: sdirk5'" in hint
 
 
 @pytest.mark.parametrize("smooth", [False, True])

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import warnings
 import weakref
+from contextlib import nullcontext
 from itertools import pairwise
 
 import der
@@ -75,9 +76,71 @@ def test_the_engine_sees_what_is_written(simulation):
 
 
 def test_held_nodes_return_to_their_place(simulation):
-    simulation.positions[0] = [0.5, 0.5]
-    simulation.step()
-    assert np.array_equal(simulation.positions[0], [0.0, 0.0])
+    """A warning says so, once."""
+    for answer in (
+        pytest.warns(
+            der.DerWarning, match=r"node 0 of rod '\w+' .* at 0\.5 m, .* at 0 m at t = 0 s"
+        ),
+        nullcontext(),
+    ):
+        simulation.positions[0] = [0.5, 0.5]
+        with answer, warnings.catch_warnings():
+            if isinstance(answer, nullcontext):
+                warnings.simplefilter("error")
+            simulation.step()
+        assert np.array_equal(simulation.positions[0], [0.0, 0.0])
+
+
+@pytest.mark.parametrize("arrives_by", ["equilibrium", "step", ""])
+def test_supports_arrive_before_a_shape_is_written(swing, arrives_by):
+    """Whatever is written, prescribe moves a support during the next step."""
+    swing["supports"][0] = {"rod": "arm", "at": "start", "clamp": True, "prescribe": {"x": 0}}
+    simulation = der.Simulation(swing)
+    shape = simulation.positions + np.array([0.3, 0.0])
+    simulation.prescribe(0, x=0.3)
+    if arrives_by:
+        getattr(simulation, arrives_by)()
+    simulation.positions[...] = shape
+    simulation.velocities[...] = 0.0
+    with nullcontext() if arrives_by else pytest.warns(der.DerWarning, match="arrive before"):
+        simulation.step()
+    moved = np.abs(simulation.positions - shape).max()
+    assert moved < 0.01 if arrives_by else moved > 0.1
+
+
+def test_supports_move_on_from_a_shape_once_it_is_entered():
+    """Without the equilibrium between, the clamp counts as turned already in the written shape."""
+    stiffness = {"EA": 1e5, "EI": 1, "GJ": 0.8, "mass_per_length": 1}
+    wire = {"name": "wire", "nodes": 11, "from": [0, 0, 0], "to": [1, 0, 0]}
+    clamp = {"rod": "wire", "clamp": True}
+    scene = {
+        "rods": [wire | {"cross_section": {"stiffness": stiffness}}],
+        "supports": [
+            clamp | {"at": "start"},
+            clamp | {"at": "end", "prescribe": {"x": 0, "twist": 0}},
+        ],
+        "loads": [{"distributed_force": {"rod": "wire", "force": [0, 0, -0.5]}}],
+        "analysis": "static",
+    }
+    known = der.Simulation(scene)
+    known.prescribe(1, x=-0.1, twist=1.0)
+    known.equilibrium()
+    kept = known.energies.elastic
+    found = {}
+    for entered in (False, True):
+        simulation = der.Simulation(scene)
+        simulation.prescribe(1, x=-0.1, twist=1.0)
+        simulation.positions[...], simulation.theta[...] = known.positions, known.theta
+        if entered:
+            simulation.equilibrium()
+        simulation.prescribe(1, twist=1.0 + 2.0 * np.pi)
+        simulation.equilibrium()
+        found[entered] = simulation.energies.elastic
+    known.prescribe(1, twist=1.0 + 2.0 * np.pi)
+    known.equilibrium()
+    assert found[True] == pytest.approx(known.energies.elastic, rel=1e-6)
+    assert found[False] == pytest.approx(kept, rel=1e-6)
+    assert found[True] > 2.0 * found[False]
 
 
 def test_views_do_not_move_and_outlive_the_name_of_the_simulation(simulation, swing):

@@ -266,6 +266,8 @@ class Simulation {
   void check_finite_state() const;
   /// Enters what a program has written since the last step in the frames and the audit.
   void enter_writes();
+  /// Warns, once, of a held node that a program has written away from its support.
+  void warn_of_held_nodes();
   /// Moves what a state follows to the shape that a program has written into it.
   void follow_written_shape(State& state, const CancelCallback& beat);
   /// The forces at the present state.
@@ -293,6 +295,7 @@ class Simulation {
   ElongationLimits elongation_limits_;
   TurningLimits turning_limits_;
   std::vector<std::string> warnings_;  // not taken yet
+  bool told_of_held_nodes_ = false;
   std::set<std::string> coarse_rods_;  // that there was a warning of
   std::shared_ptr<const Pattern> pattern_;
   LinearSolverChoice solver_;

@@ -15,10 +15,12 @@ namespace {
 constexpr std::int64_t kManySteps = 20'000;
 /// More than a motion takes that starts no waves: a jump of velocity is the likely cause then.
 constexpr std::int64_t kManyAfterKinks = 1'000;
+/// Steppers of this order take fewer steps where a motion is smooth.
+constexpr int kHighOrder = 4;
 /// Ratio of the longest step to the mean one, from which on the motion itself has changed.
 constexpr double kGrownRough = 10.0;
 
-std::string about(const std::vector<MotionKink>& kinks) {
+std::string about(const std::vector<MotionKink>& kinks, int order) {
   std::string places;
   for (const auto& [path, at] : kinks) {
     places += fmt::format("{}{} at {:g} s", places.empty() ? "" : ", ", path, at);
@@ -26,8 +28,9 @@ std::string about(const std::vector<MotionKink>& kinks) {
   return fmt::format(
       ". Supports jump to another velocity where their tables have kinks ({}). That starts waves "
       "of every length, and the steps resolve those that move nodes. For fewer steps, write "
-      "'smooth: true' in these tables, or choose a larger tolerance",
-      places);
+      "'smooth: true' in these tables{}, or choose a larger tolerance, or equal steps (time.step) "
+      "of tr_bdf2 or sdirk5, which damp the waves that they do not resolve",
+      places, order < kHighOrder ? " and 'integrator: sdirk5' under time" : "");
 }
 
 }  // namespace
@@ -49,7 +52,7 @@ std::vector<std::string> hints(const Simulation& simulation, const Counters& cou
   if (!kinks.empty() && (steps >= kManySteps || simulation.integrator().order > 1)) {
     return {fmt::format("time.tolerance: {:g} took {} steps of about {:.2g} s", time.tolerance,
                         steps, mean) +
-            about(kinks)};
+            about(kinks, simulation.integrator().order)};
   }
   if (steps < kManySteps) return {};
   if (is_even) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "der/core/error.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
 #include "der/statics/written_shape.hpp"
@@ -19,6 +20,10 @@ namespace {
 constexpr double kSameLength = 1e-9;
 /// Supports that move farther in a step, in edges or radians, are a mistake.
 constexpr double kMostStrips = 1e4;
+
+/// A held node that a program has written farther from its support than this share of the shortest
+/// edge is told: a step takes it back at once.
+constexpr double kAwayFromSupport = 0.01;
 
 /// Explicit steps as long as nine tenths of the stable one give the fastest motion an energy that
 /// swings by 1/(1 - 0.9^2) times what it has, without growing: that is doubtful, but no failure.
@@ -85,10 +90,33 @@ void Simulation::enter_writes() {
   if (!energy_monitor_.has_external_writes(state_)) return;
   const double before = energy_monitor_.energy_before_writes(state_);
   if (energy_monitor_.has_written_shape(state_)) {
+    warn_of_held_nodes();
     follow_written_shape(state_, {});
     settle_rotations();
   }
   energy_monitor_.enter_written(before, state_);
+}
+
+void Simulation::warn_of_held_nodes() {
+  if (told_of_held_nodes_) return;
+  Vector controls;
+  evaluate_controls(model_, state_, state_.time, controls);
+  Vector at_supports = state_.positions;
+  apply_prescribed_motion(model_, controls, at_supports);
+  const Vector away = (at_supports - state_.positions).head(model_.dofs.num_positions());
+  Index worst = 0;
+  const double farthest = away.cwiseAbs().maxCoeff(&worst);
+  double edge = std::numeric_limits<double>::infinity();
+  for (const RodMesh& rod : model_.rods) {
+    edge = std::min(edge, *std::min_element(rod.edge_length.begin(), rod.edge_length.end()));
+  }
+  if (!(farthest > kAwayFromSupport * edge)) return;
+  told_of_held_nodes_ = true;
+  warnings_.push_back(fmt::format(
+      "positions were written with {} at {:.4g} m, where its support has it at {:.4g} m at t = "
+      "{:.6g} s: the next step takes it back there at once. Let supports arrive before you write: "
+      "after prescribe, equilibrium() has them there at once and step() at its end",
+      describe_dof(model_, worst), state_.positions[worst], at_supports[worst], state_.time));
 }
 
 void Simulation::follow_writes() {

@@ -26,6 +26,7 @@ Verdict = Literal[
     "converged",  # at the expected order or faster
     "exact",  # refining changes nothing beyond rounding
     "compared",  # with one other way to draw the rods, which shows no order
+    "unresolved",  # the same, but the points do not tell how the curve of a rod bends
     "two levels",  # the order could not be measured, since only one refinement was done
     "settled",  # the changes shrink by as much as order 1 would have it, but not as expected
     "slow",  # the changes shrink by less, at less than three quarters of the expected order
@@ -40,7 +41,15 @@ Verdict = Literal[
 
 #: No order is seen, and the changes do not shrink: another level may tell more.
 _UNSETTLED = ("slow", "diverging", "oscillating")
-_FLAGGED = (*_UNSETTLED, "damped", "contradicted", "failed", "other branch", "unmatched")
+_FLAGGED = (
+    *_UNSETTLED,
+    "unresolved",
+    "damped",
+    "contradicted",
+    "failed",
+    "other branch",
+    "unmatched",
+)
 
 _FACTOR_AT_ORDER = 1.25
 _FACTOR_OFF_ORDER = 3.0
@@ -172,12 +181,15 @@ def estimate_from_levels(
 
 
 def estimate_drawing(
-    by_level: Mapping[int, float], others: Mapping[int, float], noise: float
+    by_level: Mapping[int, float],
+    others: Mapping[int, float],
+    noise: float,
+    resolved: bool = True,
 ) -> ErrorEstimate:
     """Estimate the error from splines through points that are not the curve that they sample.
 
     On the meshes of `others` the nodes lie on splines of another degree, whose own error is of a
-    higher order.
+    higher order where the curve is `resolved` by its points.
     """
     levels = by_level.keys() & others.keys()
     if not levels:
@@ -186,7 +198,8 @@ def estimate_drawing(
     if apart <= noise:
         return ErrorEstimate(0.0, noise, None, _ORDER_OF_SPLINES, "exact")
     error_bar = noise + _FACTOR_OFF_ORDER * apart
-    return ErrorEstimate(0.0, error_bar, None, _ORDER_OF_SPLINES, "compared")
+    verdict: Verdict = "compared" if resolved else "unresolved"
+    return ErrorEstimate(0.0, error_bar, None, _ORDER_OF_SPLINES, verdict)
 
 
 def on_one_branch(estimate: ErrorEstimate, mirrored: bool, largest: float) -> ErrorEstimate:

@@ -9,7 +9,13 @@ from typing import Any
 import numpy as np
 
 from der._core import Scenario
-from der.accuracy.resampling import Array, arc_lengths, resample, resample_list
+from der.accuracy.resampling import (
+    Array,
+    arc_lengths,
+    resample,
+    resample_list,
+    unresolved_nodes,
+)
 from der.scene_loads import kind_of
 
 #: Order of the rods in the length of their elements, and of every probe but the turning angle.
@@ -65,6 +71,19 @@ def curves_between_points(scenario: Scenario) -> list[str]:
         points, others = (_resampled(rod, Fraction(2), other) for other in (False, True))
         if np.max(np.abs(points - others)) > _SAME_CURVE * np.max(np.ptp(points, axis=0)):
             found.append(rod["name"])
+    return found
+
+
+def unresolved_curves(scenario: Scenario) -> dict[str, list[int]]:
+    """Return the nodes beside which points do not resolve the curve of a rod, by its name."""
+    curves = curves_between_points(scenario)
+    found = {}
+    for rod in scenario.to_dict()["rods"]:
+        if rod["name"] in curves:
+            points = np.array(rod["points"], dtype=float)
+            nodes = unresolved_nodes(points, closed=bool(rod.get("closed")))
+            if nodes:
+                found[rod["name"]] = nodes
     return found
 
 

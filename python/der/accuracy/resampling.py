@@ -28,6 +28,11 @@ _LEAST_SHARE = 0.15
 #: Nodes on either side of a jump, of the same leg, from which it is known.
 _BESIDE_JUMP = 2
 
+#: Points leave a curvature open that is uncertain by more than this share of the largest.
+_OPEN_CURVATURE = 0.25
+#: Elements for one, on which that is seen.
+_WITHIN_ELEMENT = 4
+
 #: Degree of the splines through points: the error of their curvature is of fourth order in the
 #: distance of the points, that of a mesh of second.
 _DEGREE = 5
@@ -35,26 +40,36 @@ _DEGREE = 5
 _OTHER_DEGREE = 7
 
 
-def find_corners(points: Array) -> list[int]:
+def find_corners(points: Array, *, certain: bool = False) -> list[int]:
     """Return the inner nodes at which a line has a corner instead of being a sampled curve.
 
     A corner is a turn of more than 60 degrees, or one of more than 0.1 that stands alone: three
     times what the line turns the same way at the nodes before and after. In a curve that is sampled
     finely enough to be computed with, neighbouring turns are alike (`model/corner.hpp`).
+
+    Beside an end of the line, one of these two nodes is missing. A turn may then stand alone
+    because the curve has an inflection behind it. It is a `certain` corner if it is also three
+    times what the next two turns lead to.
     """
     size, axes = _turns(points)
-    padded = np.pad(size[:, None] * axes, ((1, 1), (0, 0)))
+    turns = size[:, None] * axes
+    padded = np.pad(turns, ((1, 1), (0, 0)))
+    if certain and len(turns) > 2:
+        padded[0], padded[-1] = 2.0 * turns[[1, -2]] - turns[[2, -3]]
     beside = np.maximum(np.sum(axes * padded[:-2], axis=1), np.sum(axes * padded[2:], axis=1))
     alone = (size > _LEAST_CORNER) & (size > _ISOLATED_TURN * np.maximum(beside, 0.0))
     return [int(i) + 1 for i in np.flatnonzero(alone | (size > _SHARP_TURN))]
 
 
-def find_curvature_jumps(points: Array) -> list[int]:
+def find_curvature_jumps(points: Array, *, certain: bool = False) -> list[int]:
     """Return the inner nodes, corners apart, at which the curvature of a line jumps.
 
     On either side of a node the curvature is that of the two nodes next to it, extrapolated. It
     jumps if the two values differ by more than twice what the extrapolations change and what the
     turn at the node differs from that of the two sides, all added (`model/curvature_jump.hpp`).
+
+    The flanks of a narrow peak may look like this, too. A jump is `certain` if the curvature of
+    the third node on either side, where there is one, is as that of the first two.
     """
     beside = _BESIDE_JUMP
     inner = len(points) - 2
@@ -72,7 +87,11 @@ def find_curvature_jumps(points: Array) -> list[int]:
         near, far = here + step, here + 2 * step
         reach = (nodes[here] - places[near]) / (places[near] - places[far])
         change = reach[:, None] * (curvature[near] - curvature[far])
-        return curvature[near] + change, np.linalg.norm(change, axis=1)
+        size = np.linalg.norm(change, axis=1)
+        if certain:
+            third = np.clip(far + step, 0, inner - 1)
+            size += np.linalg.norm(curvature[far] - curvature[third], axis=1)
+        return curvature[near] + change, size
 
     before, change_before = extrapolated(-1)
     after, change_after = extrapolated(1)
@@ -114,8 +133,9 @@ def resample(
     closed
         Whether the first node follows the last one.
     other_curve
-        Whether to take splines of another degree. They differ from the usual ones about as much as
-        these do from the smooth curve that the points sample.
+        Whether to take splines of another degree, through corners and jumps of the curvature that
+        are not certain. They differ from the usual ones about as much as these do from the smooth
+        curve that the points sample.
 
     Raises
     ------
@@ -127,8 +147,9 @@ def resample(
     beyond = _BESIDE_JUMP + 1 if closed else 0  # nodes behind the ends of a ring that tell of them
     around = np.take(points, np.arange(-beyond, count + beyond), axis=0, mode="wrap")
 
-    def places(find: Callable[[Array], list[int]]) -> list[int]:
-        return [i - beyond for i in find(around) if beyond <= i < count + beyond]
+    def places(find: Callable[..., list[int]]) -> list[int]:
+        found = find(around, certain=other_curve)
+        return [i - beyond for i in found if beyond <= i < count + beyond]
 
     corners = places(find_corners)
     step = factor.denominator
@@ -162,6 +183,32 @@ def resample(
     ]
     refined = np.vstack([*(leg[:-1] for leg in legs), line[-1:]])
     return np.roll(refined[:-1], first * factor.numerator, axis=0) if closed else refined
+
+
+def unresolved_nodes(points: Array, *, closed: bool = False) -> list[int]:
+    """Return the nodes beside which points do not tell how their curve bends.
+
+    There the usual curve through them and the other one (`resample`) differ in curvature by more
+    than a quarter of the largest. Certain corners do not count.
+    """
+    factor = _WITHIN_ELEMENT
+    curvatures, turns = [], []
+    for other in (False, True):
+        line = resample(points, Fraction(factor), closed=closed, other_curve=other)
+        if closed:
+            line = np.vstack([line[-1:], line, line[:1]])
+        size, axes = _turns(line)
+        lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
+        curvatures.append(2.0 * size[:, None] * axes / (lengths[:-1] + lengths[1:])[:, None])
+        turns.append(size)
+    nodes = np.arange(len(turns[0])) + (0 if closed else 1)
+    corners = np.array(find_corners(points, certain=True), dtype=int)
+    smooth = ~np.isin(nodes, factor * corners)
+    apart = np.linalg.norm(curvatures[0] - curvatures[1], axis=1)
+    largest = np.max(np.linalg.norm(curvatures[1], axis=1), where=smooth, initial=0.0)
+    bends = np.maximum(*turns) > _NO_TURN
+    found = np.flatnonzero(smooth & bends & (apart > _OPEN_CURVATURE * largest))
+    return sorted({int(node) for node in np.rint(nodes[found] / factor) % len(points)})
 
 
 def _refine_leg(

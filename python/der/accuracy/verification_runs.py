@@ -13,6 +13,7 @@ from der.accuracy.refinement import (
     count_nodes,
     curves_between_points,
     rods_that_cannot_be_refined,
+    unresolved_curves,
     with_elements,
 )
 from der.accuracy.time_levels import TimeLevels, stepper_of
@@ -23,8 +24,9 @@ from der.result import Result
 #: CPU time [s] up to which a third level is added, which measures the order, unless asked for, and
 #: further ones where it shows no order.
 _BUDGET = 60.0
-#: Level in space at which curves through points are compared: new nodes lie between the points.
-_DRAWING_LEVEL = 1
+#: Level in space at which curves through points are compared, or the finest there is. Their peaks
+#: lie between the points, and more of them is seen with three nodes there than with one.
+_DRAWING_LEVEL = 2
 #: What the run with these is called.
 OTHER_CURVES = "other curves through the points"
 #: No level is finer than this many times doubled.
@@ -61,6 +63,8 @@ class VerificationRuns:
         steps are small already.
     curves
         Names of the rods that are drawn by points.
+    unresolved
+        The nodes beside which these do not resolve the curve of a rod, by its name.
     meshes, steps, notes
         As in `Verification`.
     cpu_seconds
@@ -72,6 +76,7 @@ class VerificationRuns:
     levels: int = 3
     results: dict[Key, Result] = field(default_factory=dict)
     curves: list[str] = field(default_factory=list)
+    unresolved: dict[str, list[int]] = field(default_factory=dict)
     meshes: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -123,6 +128,7 @@ class Runner:
         refined = self._can_refine_space()
         if refined:
             runs.curves = curves_between_points(scenario)
+            runs.unresolved = unresolved_curves(scenario)
         runs.levels = levels or self._affordable_levels(refined)
         if refined:
             runs.meshes = [self._name("space", level) for level in range(runs.levels)]
@@ -223,7 +229,7 @@ class Runner:
         """Return the runs by which meshes are compared, and curves through points."""
         if not self.runs.space_is_refined:
             return []
-        drawing: list[Key] = [("drawing", _DRAWING_LEVEL)] if self.runs.curves else []
+        drawing: list[Key] = [("drawing", min(_DRAWING_LEVEL, finest))] if self.runs.curves else []
         return [*(("space", level) for level in range(finest + 1)), *drawing]
 
     def _tasks(self, keys: Iterable[Key], time: int = 0) -> dict[Key, Task]:

@@ -204,7 +204,7 @@ class Evaluation:
             return None
         values = self._by_level("space", reading.label)
         others = self._by_level("drawing", reading.label)
-        estimate = estimate_drawing(values, others, noise)
+        estimate = estimate_drawing(values, others, noise, not self._runs.unresolved)
         return on_one_branch(estimate, "drawing" in self._mirrored, reading.largest)
 
     def _time_error(self, reading: Reading, noise: float) -> ErrorEstimate | None:
@@ -263,6 +263,13 @@ class Evaluation:
                 f"drawing: the points of {_quoted(runs.curves)} leave open how the curve runs "
                 "between them. Draw more points of the curve; finer meshes do not tell"
             )
+        if any("unresolved" in value.verdict for value in values):
+            notes += [
+                f"the points of '{rod}' do not resolve its curve beside node{_plural(nodes)} "
+                f"{_listed(nodes)}: other curves through them bend otherwise by more than a "
+                "quarter of the largest curvature. Draw more points there"
+                for rod, nodes in runs.unresolved.items()
+            ]
         notes += self._differences()
         if self._hidden_motion:
             notes.append(
@@ -293,6 +300,15 @@ class Evaluation:
             if not all(label in other for other in self._all)
         )
         return [f"{kind}: {describe_counts(kind, runs)}; not all are the same" for kind in kinds]
+
+
+def _plural(items: list[int]) -> str:
+    return "s" if len(items) > 1 else ""
+
+
+def _listed(nodes: list[int]) -> str:
+    more = f" and {len(nodes) - _MOST_NAMED} more" if len(nodes) > _MOST_NAMED else ""
+    return ", ".join(map(str, nodes[:_MOST_NAMED])) + more
 
 
 def _quoted(names: Iterable[str]) -> str:

@@ -4,6 +4,7 @@
 
 #include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
+#include "scenario/segments.hpp"
 #include "scenario/suggestion.hpp"
 
 namespace der::scenario {
@@ -14,7 +15,7 @@ namespace {
 constexpr double kSamePoint = 2e-5;
 
 /// Why something has a place.
-enum class Role { Joint, Acts, IsRead };
+enum class Role { Border, Joint, Acts, IsRead };
 
 /// A place of a rod, by the key that names it.
 struct NamedPlace {
@@ -56,7 +57,7 @@ void name_by_arc_length(const RestLine& line, Location& at) {
 }
 
 /// The places inside a rod where legs end, ascending. Those that are nearly one become one: that of
-/// a joint, whose rods meet there, if there is one.
+/// a border of the drawn shape, or of a joint, whose rods meet there, if there is one.
 std::vector<double> leg_ends(const RestLine& line, const Places& places) {
   const double near = kSamePoint * line.length();
   Places inside;
@@ -82,51 +83,30 @@ std::vector<double> leg_ends(const RestLine& line, const Places& places) {
     const double from = inside[first].at->arc_length;
     while (last < inside.size() && inside[last].at->arc_length <= from + near) ++last;
     std::size_t chosen = first;
-    for (std::size_t i = first; i < last && inside[chosen].role != Role::Joint; ++i) {
-      if (inside[i].role == Role::Joint) chosen = i;
+    for (std::size_t i = first; i < last; ++i) {
+      if (inside[i].role < inside[chosen].role) chosen = i;
     }
     ends.push_back(inside[chosen].at->arc_length);
+    const bool all = inside[chosen].role == Role::Border;
     for (; first < last; ++first) {
-      if (inside[first].role != Role::Joint) inside[first].at->arc_length = ends.back();
+      if (all || inside[first].role != Role::Joint) inside[first].at->arc_length = ends.back();
     }
   }
   return ends;
 }
 
-/// Shares cells out among legs of these lengths, one each at least, so that the longest cell is as
-/// short as can be.
-std::vector<int> share_out(int cells, const std::vector<double>& lengths, double whole) {
-  std::vector<int> counts;
-  int given = 0;
-  for (const double length : lengths) {
-    counts.push_back(std::max(1, static_cast<int>(cells * (length / whole) * (1.0 - 1e-12))));
-    given += counts.back();
-  }
-  const auto cell = [&](std::size_t leg, int more) { return lengths[leg] / (counts[leg] + more); };
-  for (; given != cells; given += given < cells ? 1 : -1) {
-    std::size_t chosen = lengths.size();
-    for (std::size_t leg = 0; leg < lengths.size(); ++leg) {
-      if (given > cells && counts[leg] == 1) continue;
-      const bool better =
-          chosen == lengths.size() ||
-          (given < cells ? cell(leg, 0) > cell(chosen, 0) : cell(leg, -1) < cell(chosen, -1));
-      if (better) chosen = leg;
-    }
-    counts[chosen] += given < cells ? 1 : -1;
-  }
-  return counts;
-}
-
-/// A list with a value for each node of an even rod, linear in between.
-class EvenList {
+/// A list with a value for each node of a line, linear in between.
+class NodeList {
  public:
-  EvenList(int nodes, double length) : cells_(nodes - 1), length_(length) {}
+  explicit NodeList(const RestLine& line) : line_(line) {}
 
   template <class Item, class Number>
   [[nodiscard]] double value(const std::vector<Item>& list, double s, const Number& number) const {
-    const double place = s / length_ * cells_;
-    const int before = std::clamp(static_cast<int>(place), 0, cells_ - 1);
-    const double share = place - before;
+    const int nearest = line_.nearest_node(s);
+    const int before =
+        std::clamp(nearest - (s < line_.arc_length(nearest) ? 1 : 0), 0, line_.num_nodes() - 2);
+    const double from = line_.arc_length(before);
+    const double share = (s - from) / (line_.arc_length(before + 1) - from);
     const auto at = [&](int k) { return number(list[static_cast<std::size_t>(k)]); };
     return (1.0 - share) * at(before) + share * at(before + 1);
   }
@@ -135,78 +115,82 @@ class EvenList {
   }
 
  private:
-  int cells_;
-  double length_;
+  const RestLine& line_;
 };
 
-/// Places the nodes of a straight rod evenly on each leg: as many cells as the scene's `nodes` say,
-/// each cut into as many as `subdivide` says.
-void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, double length) {
+/// Places the nodes of a rod on its curve, evenly on each leg: as many cells as the scene's `nodes`
+/// say, each cut into as many as `subdivide` says.
+RestLine place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends,
+                     const RestLine& line) {
+  const double drawn = text.curve->length() / line.length();
   std::vector<double> bounds{0.0};
-  bounds.insert(bounds.end(), ends.begin(), ends.end());
-  bounds.push_back(length);
+  for (const double end : ends) bounds.push_back(drawn * end);
+  bounds.push_back(text.curve->length());
   std::vector<double> lengths;
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) lengths.push_back(bounds[i + 1] - bounds[i]);
-  std::vector<int> cells = share_out(*text.nodes - 1, lengths, length);
-  const int factor = text.subdivide.value_or(1);
-  for (int& count : cells) count *= factor;
-  rod.points.resize(static_cast<std::size_t>((*text.nodes - 1) * factor) + 1, rod.points.back());
-  const EvenList even(text.nodes.value(), length);
-  const std::vector<Components> velocities = rod.initial_velocity;
-  rod.initial_velocity.resize(velocities.empty() ? 0 : rod.points.size(),
-                              velocities.empty() ? Components() : velocities.back());
-  auto* curvatures = std::get_if<std::vector<double>>(&rod.natural_curvature);
-  const std::vector<double> natural = curvatures != nullptr ? *curvatures : std::vector<double>();
-  if (curvatures != nullptr) curvatures->resize(rod.points.size(), natural.back());
-  auto* pairs = std::get_if<std::vector<CurvaturePair>>(&rod.natural_curvature);
-  const auto natural_pairs = pairs != nullptr ? *pairs : std::vector<CurvaturePair>();
-  if (pairs != nullptr) pairs->resize(rod.points.size(), natural_pairs.back());
-  auto* twists = std::get_if<std::vector<double>>(&rod.natural_twist);
-  const std::vector<double> natural_twist = twists != nullptr ? *twists : std::vector<double>();
-  if (twists != nullptr) twists->resize(rod.points.size(), natural_twist.back());
-  std::size_t node = 0;
-  for (std::size_t leg = 0; leg < cells.size(); ++leg) {
-    for (int k = 1; k <= cells[leg]; ++k) {
-      const double s = bounds[leg] + lengths[leg] * k / cells[leg];
-      Components& point = rod.points[++node];
-      for (std::size_t c = 0; c < point.size(); ++c) {
-        point[c] = text.from[c] + s / length * (text.to[c] - text.from[c]);
-      }
-      if (curvatures != nullptr) (*curvatures)[node] = even.value(natural, s);
-      if (twists != nullptr) (*twists)[node] = even.value(natural_twist, s);
-      if (pairs != nullptr) {
-        (*pairs)[node] = {
-            even.value(natural_pairs, s, [](const CurvaturePair& each) { return each.first; }),
-            even.value(natural_pairs, s, [](const CurvaturePair& each) { return each.second; })};
-      }
-      for (std::size_t c = 0; c < point.size() && !velocities.empty(); ++c) {
-        rod.initial_velocity[node][c] =
-            even.value(velocities, s, [c](const Components& each) { return each[c]; });
-      }
-    }
+  std::vector<int> cells = share_out(*text.nodes - 1, lengths);
+  for (int& count : cells) count *= text.subdivide.value_or(1);
+  CurveMesh mesh = mesh_of(*text.curve, bounds, cells);
+  rod.points = std::move(mesh.points);
+  enter_borders(*text.curve, mesh, rod);
+  const NodeList given(line);
+  const auto interpolated = [&](auto& values, const auto& at) {
+    if (values.empty()) return;
+    std::decay_t<decltype(values)> all;
+    for (const double s : mesh.arc_length) all.push_back(at(values, s / drawn));
+    values = std::move(all);
+  };
+  const auto number_at = [&](const std::vector<double>& values, double s) {
+    return given.value(values, s);
+  };
+  if (auto* list = std::get_if<std::vector<double>>(&rod.natural_curvature)) {
+    interpolated(*list, number_at);
   }
-  rod.points.back() = text.to;
+  if (auto* list = std::get_if<std::vector<double>>(&rod.natural_twist)) {
+    interpolated(*list, number_at);
+  }
+  if (auto* list = std::get_if<std::vector<CurvaturePair>>(&rod.natural_curvature)) {
+    interpolated(*list, [&](const std::vector<CurvaturePair>& values, double s) {
+      return CurvaturePair{
+          given.value(values, s, [](const CurvaturePair& each) { return each.first; }),
+          given.value(values, s, [](const CurvaturePair& each) { return each.second; })};
+    });
+  }
+  interpolated(rod.initial_velocity, [&](const std::vector<Components>& values, double s) {
+    Components velocity(values.front().size());
+    for (std::size_t c = 0; c < velocity.size(); ++c) {
+      velocity[c] = given.value(values, s, [c](const Components& each) { return each[c]; });
+    }
+    return velocity;
+  });
+  return rest_line(*text.curve, mesh, rod.points, rod.rest_length);
 }
 
-void place_leg_ends(CheckContext& context, std::size_t number, const Places& places) {
+void place_leg_ends(CheckContext& context, std::size_t number, Places places) {
   const Path path{"rods", static_cast<int>(number)};
   std::optional<RestLine>& line = context.lines[number];
   RodText& text = context.scene.given_rods[number];
   Rod& rod = context.scene.rods[number];
   if (!text.nodes) return;  // those of a rod drawn by points stay
+  std::vector<Location> borders;
+  for (const CurveBorder& border : text.curve->borders()) {
+    Location& at = borders.emplace_back();
+    at.kind = Location::Kind::ArcLength;
+    at.arc_length = border.arc_length / text.curve->length() * line->length();
+  }
+  for (Location& border : borders) places.push_back({&border, Role::Border});
   const std::vector<double> ends = leg_ends(*line, places);
   const int least = static_cast<int>(ends.size()) + 2;
   if (*text.nodes < least) {
     context.diagnostics.add(
         path / "nodes",
-        fmt::format("things act at {} places inside the rod, and it takes a node at each: write "
+        fmt::format("things act at {} places inside the rod{}, and it takes a node at each: write "
                     "{} or more",
-                    ends.size(), least));
+                    ends.size(), borders.empty() ? "" : ", or its shape has borders there", least));
     line.reset();
     return;
   }
-  place_nodes(text, rod, ends, line->length());
-  line = RestLine(rod.points, false, rod.rest_length);
+  line = place_nodes(text, rod, ends, *line);
 }
 
 /// Gives all that stands on a joint the place of the joint's first member that bends, or else of
@@ -297,10 +281,11 @@ void place_leg_ends(CheckContext& context) {
   SceneText& scene = context.scene;
   for (std::size_t i = 0; i < scene.given_rods.size(); ++i) {
     if (!scene.given_rods[i].subdivide) continue;
-    if (!scene.joints.empty() && scene.given_rods[i].nodes) continue;
+    const bool by_shape = !scene.given_rods[i].shape.empty();
+    if ((!scene.joints.empty() || by_shape) && scene.given_rods[i].nodes) continue;
     context.diagnostics.add(Path{"rods", static_cast<int>(i)} / "subdivide",
-                            "is for straight rods in a scene with joints: write the number of "
-                            "'nodes', or more 'points'");
+                            "is for rods with a 'shape', and for straight ones in a scene with "
+                            "joints: write the number of 'nodes', or more 'points'");
   }
   name_members(context);
   if (scene.joints.empty()) return;
@@ -333,6 +318,52 @@ void place_leg_ends(CheckContext& context) {
   for (auto& [border, at] : borders) {
     if (at.kind == Location::Kind::ArcLength) *border = at.arc_length;
     if (at.kind == Location::Kind::Start) *border = 0.0;
+  }
+}
+
+void count_along_edges(CheckContext& context) {
+  SceneText& scene = context.scene;
+  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
+    const Rod& rod = scene.rods[i];
+    const auto& curve = scene.given_rods[i].curve;
+    if (!curve || curve->is_polyline()) continue;
+    const RestLine& along_curve = *context.lines[i];
+    const RestLine along_edges(rod.points, rod.closed, rod.rest_length);
+    const auto moved = [&](double s) {
+      const auto place = [](const RestLine& line, int node) {
+        return node < line.num_nodes() ? line.arc_length(node) : line.length();
+      };
+      const int nearest = along_curve.nearest_node(s);
+      const int before = std::clamp(nearest - (s < along_curve.arc_length(nearest) ? 1 : 0), 0,
+                                    rod.num_edges() - 1);
+      const double from = place(along_curve, before);
+      const double share = (s - from) / (place(along_curve, before + 1) - from);
+      return place(along_edges, before) +
+             share * (place(along_edges, before + 1) - place(along_edges, before));
+    };
+    const auto move = [&](const std::string& name, Location& at) {
+      const bool is_middle = at.kind == Location::Kind::Middle;
+      if (name != rod.name || !(is_middle || at.kind == Location::Kind::ArcLength)) return;
+      at.arc_length = moved(along_curve.arc_length_of(at));
+      at.kind = Location::Kind::ArcLength;
+    };
+    for_each_place(scene, [&](const std::string& name, Location& at, Role) { move(name, at); });
+    for (Probe& probe : scene.output.probes) {
+      if (probe.rod && probe.at) move(*probe.rod, *probe.at);
+    }
+    const auto move_part = [&](auto& part) {
+      if (part.rod != rod.name) return;
+      part.from = moved(part.from);
+      part.to = moved(part.to);
+    };
+    for (Load& load : scene.loads) {
+      std::visit(
+          [&](auto& what) {
+            if constexpr (std::is_base_of_v<OnPart, std::decay_t<decltype(what)>>) move_part(what);
+          },
+          load.what);
+    }
+    for (Actuation& actuation : scene.actuations) move_part(actuation);
   }
 }
 

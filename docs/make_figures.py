@@ -308,6 +308,41 @@ def helical_buckling() -> Figure:
     return figure
 
 
+def drawn_shapes() -> Figure:
+    """Draw a hook of lines and arcs with its nodes, and a spring with two hooks in space."""
+    hook = [
+        {"line": [0, -6]},
+        {"arc": {"to": [3, -9], "radius": 3}},
+        {"arc": {"to": [6, -6], "radius": 3}},
+        {"line": [7, -5.5]},
+    ]
+    coil = [
+        {"arc": {"to": [1, 0, 1], "centre": [0, 0, 1]}},
+        {"helix": {"axis": [0, 0, 1], "centre": [0, 0, 0], "pitch": 0.35, "turns": 8}},
+        {"arc": {"to": [0, 0, 4.8], "centre": [0, 0, 3.8]}},
+    ]
+    section = {"stiffness": {"EA": 1, "EI": 1, "GJ": 1, "mass_per_length": 1}}
+
+    def nodes(start: list[float], shape: list[dict[str, Any]], count: int) -> np.ndarray:
+        rod = {"name": "rod", "from": start, "shape": shape, "nodes": count}
+        scene = {"rods": [rod | {"cross_section": section}], "analysis": "static"}
+        return der.Model(der.Scenario.from_dict(scene)).initial_positions
+
+    figure = plt.figure(figsize=(7.2, 3.6), layout="constrained")
+    flat = figure.add_subplot(1, 2, 1)
+    x, y = nodes([0, 0], hook, 2001).T
+    flat.plot(x, y, color=MUTED, linewidth=1)
+    x, y = nodes([0, 0], hook, 25).T
+    flat.plot(x, y, "o", color=PALETTE[0], markersize=4)
+    flat.set(aspect="equal", xlabel="x", ylabel="y")
+    space = figure.add_subplot(1, 2, 2, projection="3d")
+    space.plot(*nodes([0, 0, 0], coil, 801).T, color=PALETTE[0])
+    space.set(zlim=(0, 4.8))
+    space.set_box_aspect((1, 1, 2.4), zoom=1.1)
+    space.set_axis_off()
+    return figure
+
+
 def twisted_ring() -> Figure:
     """Draw a ring that leaves its plane."""
     return der.run(CONFIGS / "twisted_ring.yaml").plot(times=[0.0, 0.056, 0.07])
@@ -707,6 +742,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         bent_cantilever_45,
         hanging_coil,
         spun_strip,
+        drawn_shapes,
         table,
         helical_buckling,
         twisted_ring,

@@ -19,6 +19,7 @@ from laws.comparison import differences, largest_share, roundings, unequal
 from laws.laws import (
     Law,
     NotApplicableError,
+    cut_segments,
     in_space,
     in_units,
     is_planar,
@@ -138,6 +139,12 @@ def test_units_that_are_powers_of_four_leave_the_bits(name: str) -> None:
         pytest.skip("pivots depend on the units")
     law = in_units(mass=4.0, length=1 / 64, time=16.0)
     assert unequal(read(law.write(scene)).numbers, law.follow(scene, answer(name).numbers)) == []
+
+
+@every_scene
+def test_segments_that_are_cut_in_two(name: str) -> None:
+    """Two arcs of one circle are one arc: nodes, corners and jumps are the same."""
+    assert_obeys(cut_segments(), name, scenes()[name], answer(name))
 
 
 @every_scene

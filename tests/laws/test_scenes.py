@@ -28,6 +28,7 @@ OUTSIDE = {
     "analysis.continuation.points": "ends a path, wherever it is",
     "output.every": "set by the law: frames at the start and the end",
     "output.probes.side": "set by the law: probes from both sides",
+    "rods.shape.helix.radius": "its side goes with the axes; tests/cpp/scenario/segments_test.cpp",
     "solver.linear": "how, not what; tests/cpp/solvers/linear_solvers_test.cpp",
     "solver.max_iterations": "how, not what",
     "time.allow_unstable": "a run that is wrong on purpose",

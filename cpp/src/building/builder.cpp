@@ -137,6 +137,15 @@ Vec2 director_across(const scenario::Rod& rod, const RodMesh& layout, const Mode
   return Vec2(director.dot(Vec3::UnitZ().cross(tangent)), director.z()).normalized();
 }
 
+/// The corners and jumps of curvature that the scene tells.
+void take_borders(const scenario::Rod& rod, double rest_scale, RodMesh& layout) {
+  if (!rod.borders) return;
+  layout.drawn_corners.emplace(rod.borders->corners.begin(), rod.borders->corners.end());
+  for (const auto& [node, turn] : rod.borders->jumps) {
+    layout.reference_jumps.push_back({node, Vec3(turn[0], turn[1], turn[2]) / rest_scale});
+  }
+}
+
 /// The only place that makes a chain of nodes; everything after it reads the layout's lists.
 /// In a scene with joints rods share nodes: the reference is then as drawn, and rest lengths are
 /// those of the edges alone.
@@ -192,6 +201,7 @@ RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section,
     model.edges.push_back(layout.edge(edge, model));
   }
   layout.sphere_radius.assign(rod.points.size(), 0.0);
+  take_borders(rod, scale, layout);
   if (model.dimension == 3) {
     draw_sections(rod, layout, model);
   } else {
@@ -279,7 +289,7 @@ void lay_out_rods(const scenario::Scene& scene, std::vector<std::vector<Index>> 
     set_natural_twist(rod, layout);
     lump_masses(rod, layout, model);
     size = std::max(size, layout.rest_length());
-    layout.reference_jumps = reference_jumps_of(layout, model);
+    if (!rod.borders) layout.reference_jumps = reference_jumps_of(layout, model);
     layout.natural_jumps = natural_jumps_of(layout, model);
     model.rods.push_back(std::move(layout));
   }

@@ -14,6 +14,10 @@ bool is_corner(const RodMesh& rod, Index place, const Model& model) {
   constexpr double kSharp = kPi / 3.0 + 1e-9;
   constexpr double kAlone = 3.0;
   if (!bends_as_drawn(rod, model)) return false;
+  if (rod.drawn_corners) {
+    return rod.is_inner(place) && std::binary_search(rod.drawn_corners->begin(),
+                                                     rod.drawn_corners->end(), rod.position(place));
+  }
   const ReferenceRotation here = reference_rotation(rod, place, model);
   if (here.angle <= kLeast) return false;
   if (here.angle > kSharp) return true;

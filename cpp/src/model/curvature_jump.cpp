@@ -109,6 +109,7 @@ std::vector<CurvatureJump> jumps_of(const CellCurvature& curvature, const RodMes
                                     const Model& model) {
   std::vector<CurvatureJump> jumps;
   const auto count = static_cast<Index>(rod.nodes.size());
+  if (count <= 2 * kBeside) return jumps;
   const Index first = rod.closed ? 0 : kBeside + 1;
   const Index last = rod.closed ? count - 1 : count - 2 - kBeside;
   for (Index place = first; place <= last; ++place) {
@@ -119,10 +120,6 @@ std::vector<CurvatureJump> jumps_of(const CellCurvature& curvature, const RodMes
     if (std::none_of(cells.begin(), cells.end(), is_corner_beside)) jumps.push_back({place, jump});
   }
   return jumps;
-}
-
-bool has_cells_beside(const RodMesh& rod) {
-  return static_cast<Index>(rod.nodes.size()) > 2 * kBeside;
 }
 
 /// The section of the drawn rod before a node.
@@ -157,14 +154,13 @@ void add_twist_jumps(const RodMesh& rod, const Model& model, std::vector<Curvatu
 }  // namespace
 
 std::vector<CurvatureJump> reference_jumps_of(const RodMesh& rod, const Model& model) {
-  if (!has_cells_beside(rod)) return {};
   return jumps_of({rod, reference_curvature(rod, model), Known::BetweenEdges}, rod, model);
 }
 
 std::vector<CurvatureJump> natural_jumps_of(const RodMesh& rod, const Model& model) {
   const bool bends = model.dimension == 2 ? rod.EI > 0.0 : rod.EI_1 > 0.0 && rod.EI_2 > 0.0;
   const bool has_curvature = model.dimension == 2 || model.has_sections();
-  if (!bends || !has_curvature || !has_cells_beside(rod)) return {};
+  if (!bends || !has_curvature) return {};
   std::vector<CurvatureJump> jumps =
       bends_as_drawn(rod, model) ? rod.reference_jumps : given_jumps_of(rod, model);
   if (!rod.natural_twist.empty()) add_twist_jumps(rod, model, jumps);

@@ -7,8 +7,8 @@
 
 namespace der {
 
-/// For RodMesh::reference_jumps: all jumps of the curvature of the shape that the rod is drawn
-/// with.
+/// For RodMesh::reference_jumps of a rod that is drawn by points: all jumps of the curvature of the
+/// shape that it is drawn with. Of other rods the scene tells them.
 ///
 /// On either side the curvature is that of the two nodes next to the place, extrapolated. It jumps
 /// if the two values differ by more than twice all that is uncertain: what the extrapolations

@@ -55,6 +55,20 @@ void NaturalCurvature::read_reference(const std::vector<Index>& bounds, const Ro
         angle_between(reference_edge(rod, i - 1, model), reference_edge(rod, i, model)) /
         (0.5 * (before + after)));
   }
+  // A leg of one edge has no node of its own. Where the curvature jumps, its value is known beside.
+  for (std::size_t k = 0; k < legs_.size(); ++k) {
+    for (const bool at_end : {false, true}) {
+      if (!legs_[k].values.empty() || (at_end ? k >= bounds.size() : k == 0)) continue;
+      const Index bound = bounds[at_end ? k : k - 1];
+      const double beyond = curvature_beyond_mean(rod, bound, !at_end, rod.reference_jumps).z();
+      if (beyond == 0.0) continue;
+      legs_[k].arc_length.push_back(rod.arc_length_at(bound));
+      legs_[k].values.push_back(
+          angle_between(reference_edge(rod, bound - 1, model), reference_edge(rod, bound, model)) /
+              rod.voronoi_length(bound) +
+          beyond);
+    }
+  }
 }
 
 double NaturalCurvature::at(Index edge, double s) const {

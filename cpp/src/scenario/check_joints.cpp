@@ -192,7 +192,7 @@ class JointedSceneCheck {
                                    in_space ? "three" : "two"));
     }
     for (int i = 0; i < static_cast<int>(scene.rods.size()); ++i) {
-      check_rod(scene.rods[static_cast<std::size_t>(i)], {"rods", i});
+      check_rod(i);
     }
     for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
       Support& support = context_.scene.supports[static_cast<std::size_t>(i)];
@@ -269,7 +269,12 @@ class JointedSceneCheck {
       lacks({"analysis"}, "linear buckling in space");
     }
   }
-  void check_rod(const Rod& rod, const Path& path) {
+  void check_rod(int number) {
+    const Rod& rod = context_.scene.rods[static_cast<std::size_t>(number)];
+    const Path path{"rods", number};
+    const bool by_shape =
+        !context_.scene.given_rods[static_cast<std::size_t>(number)].shape.empty();
+    if (rod.closed && by_shape) lacks(path / "closed", "a closed rod with a 'shape'");
     if (context_.diagnostics.dimension() != 3) return;
     if (rod.closed) lacks(path / "closed", "a closed rod in space");
     if (damping_of(rod).any()) lacks(path, "internal damping in space");

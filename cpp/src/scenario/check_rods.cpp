@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "der/core/constants.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
+#include "scenario/segments.hpp"
 
 namespace der::scenario {
 namespace {
@@ -25,20 +27,14 @@ void check_name(CheckContext& context, int i) {
                                       line > 0 ? fmt::format(" (line {})", line) : std::string()));
 }
 
-void place_evenly(RodText& rod) {
-  const int count = *rod.nodes;
-  const auto last = static_cast<double>(count - 1);
-  rod.points.assign(static_cast<std::size_t>(count), rod.from);
-  for (int k = 1; k < count; ++k) {
-    const double share = static_cast<double>(k) / last;
-    Components& point = rod.points[static_cast<std::size_t>(k)];
-    for (std::size_t c = 0; c < point.size(); ++c) point[c] += share * (rod.to[c] - rod.from[c]);
-  }
-  rod.points.back() = rod.to;
-}
-
 /// The longest length [m] whose fourth power is a double, and so are the reciprocals.
 constexpr double kLongest = 1e70;
+
+/// An edge that turns by less than this [rad] from a half turn runs back over the one before.
+constexpr double kStraightBack = 1e-9;
+
+/// A shape that turns by no more than this [rad] from node to node is fine.
+constexpr double kFineTurn = 0.2;
 
 /// Whether what is computed of the rod's lengths, up to their fourth powers, are numbers.
 bool is_computable(const RodText& rod, const RestLine& line, const Path& path,
@@ -56,13 +52,68 @@ bool is_computable(const RodText& rod, const RestLine& line, const Path& path,
   return false;
 }
 
-bool check_straight(const RodText& rod, const RestLine& line, const Path& path,
-                    Diagnostics& diagnostics) {
-  if (rod.from == rod.to) {
-    diagnostics.add(path / "to", "must differ from 'from': the rod has no length");
-    return false;
+/// Puts the nodes of a rod that is drawn by `from` on its curve, and reports too few of them. In a
+/// scene with joints they are to move once it is known what stands on the rod (leg_mesh.cpp).
+std::optional<CurveMesh> place_on_curve(const CheckContext& context, RodText& rod,
+                                        const Path& path) {
+  std::optional<DrawnCurve> curve = drawn_curve(rod, path, context.diagnostics);
+  if (!curve) return std::nullopt;
+  const std::vector<double> bounds = curve->bounds();
+  const int parts = static_cast<int>(bounds.size()) - 1;
+  const int more = rod.closed ? 0 : 1;  // nodes than cells
+  if (*rod.nodes < parts + more) {
+    context.diagnostics.add(
+        path / "nodes",
+        fmt::format("the shape has {} parts between corners and jumps of its curvature, and each "
+                    "takes an element: write {} or more",
+                    parts, parts + more));
+    return std::nullopt;
   }
-  return is_computable(rod, line, path / "to", diagnostics);
+  std::vector<double> lengths;
+  for (int i = 0; i < parts; ++i) {
+    const auto part = static_cast<std::size_t>(i);
+    lengths.push_back(bounds[part + 1] - bounds[part]);
+  }
+  std::vector<int> cells = share_out(*rod.nodes - more, lengths);
+  if (context.scene.joints.empty()) {
+    for (int& count : cells) count *= rod.subdivide.value_or(1);
+  }
+  CurveMesh mesh = mesh_of(*curve, bounds, cells);
+  rod.curve = std::make_shared<DrawnCurve>(std::move(*curve));
+  return mesh;
+}
+
+/// Whether the nodes on a curve are enough for its turns.
+bool has_enough_nodes(const RodText& rod, const RestLine& line, const Path& path,
+                      Diagnostics& diagnostics) {
+  const int count = line.num_nodes();
+  double sharpest = 0.0;
+  bool lies_on_another = false;
+  Vec3 before = Vec3::Zero();
+  for (int k = 1; k < (rod.closed ? count + 2 : count); ++k) {
+    const Vec3 edge = in_space(rod.points[static_cast<std::size_t>(k % count)]) -
+                      in_space(rod.points[static_cast<std::size_t>((k - 1) % count)]);
+    const double dot = before.dot(edge);
+    lies_on_another = lies_on_another || edge.norm() <= line.same_place() ||
+                      (dot < 0.0 && before.cross(edge).norm() <= -dot * kStraightBack);
+    before = edge;
+    if (k > count) break;
+    sharpest =
+        std::max(sharpest, rod.curve->turn_between(line.arc_length(k - 1),
+                                                   k < count ? line.arc_length(k) : line.length()));
+  }
+  if (sharpest >= kPi) {
+    diagnostics.add(
+        path, fmt::format("{} are too few for this shape: it turns by {:.3g} rad from "
+                          "a node to the next, and half a turn is too much: write "
+                          "about {:g}",
+                          *rod.nodes, sharpest, std::ceil(*rod.nodes * sharpest / kFineTurn)));
+  } else if (lies_on_another) {
+    diagnostics.add(path, fmt::format("{} are too few for this shape: edges from node to node lie "
+                                      "on one another",
+                                      *rod.nodes));
+  }
+  return sharpest < kPi && !lies_on_another;
 }
 
 /// No edge without length, no edge that runs straight back over the one before.
@@ -88,8 +139,7 @@ bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
       continue;
     }
     const double dot = before_it.dot(edge);
-    constexpr double straight_back = 1e-9;  // [rad] from a half turn
-    if (dot < 0.0 && before_it.cross(edge).norm() <= -dot * straight_back) {
+    if (dot < 0.0 && before_it.cross(edge).norm() <= -dot * kStraightBack) {
       diagnostics.add(points / ((k - 1) % count),
                       "the rod turns straight back here, through 180 degrees: its "
                       "side of bending is not defined");
@@ -102,17 +152,20 @@ bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
 /// A ring goes around something.
 bool can_be_closed(const RodText& rod, const Path& path, Diagnostics& diagnostics) {
   if (!rod.closed) return true;
-  if (rod.given_points.empty()) {
+  if (rod.given_points.empty() && rod.shape.empty()) {
     diagnostics.add(path / "closed",
-                    "a straight line cannot be closed: draw the ring by 'points', of which the "
-                    "first is not repeated");
+                    "a straight line cannot be closed: draw the ring by a 'shape' that leads back "
+                    "to 'from', or by 'points', of which the first is not repeated");
     return false;
   }
-  if (rod.given_points.size() >= 3) return true;
-  diagnostics.add(path / "points",
-                  fmt::format("a closed rod takes 3 points or more, got {}: the edge from the last "
+  const std::size_t count =
+      rod.nodes ? static_cast<std::size_t>(*rod.nodes) : rod.given_points.size();
+  if (count >= 3) return true;
+  const char* key = rod.nodes ? "nodes" : "points";
+  diagnostics.add(path / key,
+                  fmt::format("a closed rod takes 3 {} or more, got {}: the edge from the last "
                               "one to the first would lie upon another",
-                              rod.given_points.size()));
+                              key, count));
   return false;
 }
 
@@ -130,7 +183,7 @@ bool check_rest_length(CheckContext& context, const RodText& rod, double drawn, 
     context.diagnostics.add(
         path,
         fmt::format("is {:.3g} times the length as drawn, {:.6g} m, and can be {:g} times it at "
-                    "most: draw a longer rod, as a curve by 'points'",
+                    "most: draw a longer rod, as a curve by 'shape' or 'points'",
                     rest / drawn, drawn, 1.0 / kShortest));
   } else if (rest < kShortest * drawn) {
     context.diagnostics.add(
@@ -158,24 +211,39 @@ bool check_rest_length(CheckContext& context, const RodText& rod, double drawn, 
 /// The rod's nodes, as far as the keys that say where they are could be read.
 void check_geometry(CheckContext& context, int i) {
   const Path path = rod_path(i);
-  for (const char* key : {"nodes", "from", "to", "points", "closed", "rest_length"}) {
+  for (const char* key :
+       {"nodes", "subdivide", "from", "to", "shape", "points", "closed", "rest_length"}) {
     if (context.diagnostics.under(path / key)) return;
   }
   RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
-  const bool straight = rod.given_points.empty();
-  if (straight && !rod.nodes) return;  // not a mapping at all
+  const bool by_points = !rod.given_points.empty();
+  if (!by_points && !rod.nodes) return;  // not a mapping at all
   if (!can_be_closed(rod, path, context.diagnostics)) return;
-  if (straight) {
-    place_evenly(rod);
-  } else {
+  std::optional<CurveMesh> mesh;
+  if (by_points) {
     rod.points = std::move(rod.given_points);
+  } else {
+    mesh = place_on_curve(context, rod, path);
+    if (!mesh) return;
+    rod.points = std::move(mesh->points);
+    enter_borders(*rod.curve, *mesh, rod);
   }
-  RestLine line(rod.points, rod.closed);
-  bool fine = straight ? check_straight(rod, line, path, context.diagnostics)
-                       : check_polyline(rod, line, path, context.diagnostics);
+  const auto line_of = [&](std::optional<double> rest_length) {
+    return by_points ? RestLine(rod.points, rod.closed, rest_length)
+                     : rest_line(*rod.curve, *mesh, rod.points, rest_length);
+  };
+  RestLine line = line_of(std::nullopt);
+  bool fine = true;
+  if (by_points) {
+    fine = check_polyline(rod, line, path, context.diagnostics);
+  } else {
+    fine = is_computable(rod, line, path / (rod.shape.empty() ? "to" : "shape"),
+                         context.diagnostics) &&
+           has_enough_nodes(rod, line, path / "nodes", context.diagnostics);
+  }
   if (fine && rod.rest_length) {
     fine = check_rest_length(context, rod, line.length(), path / "rest_length");
-    line = RestLine(rod.points, rod.closed, rod.rest_length);
+    line = line_of(rod.rest_length);
   }
   if (fine) context.lines[static_cast<std::size_t>(i)] = std::move(line);
 }

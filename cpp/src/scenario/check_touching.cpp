@@ -40,7 +40,8 @@ std::vector<Node> nodes_of(const CheckContext& context) {
   for (int rod = 0; rod < static_cast<int>(context.lines.size()); ++rod) {
     const auto& line = context.lines[static_cast<std::size_t>(rod)];
     const auto number = static_cast<std::size_t>(rod);
-    const bool straight = context.scene.given_rods[number].nodes.has_value();
+    const RodText& given = context.scene.given_rods[number];
+    const bool straight = given.nodes.has_value() && given.shape.empty();
     if (!line || (single && straight)) continue;  // a straight rod does not touch itself
     const int last = line->num_nodes() - 1;
     for (int i = 0; i <= last; ++i) {

@@ -178,6 +178,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   if (std::string problem = unit_problem(scene); !problem.empty()) {
     scene.warnings.push_back(std::move(problem));
   }
+  count_along_edges(context);
   conform(scene, model.kind);
 }
 

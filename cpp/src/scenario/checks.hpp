@@ -85,6 +85,8 @@ void check_rods(CheckContext& context);
 /// Moves the nodes of straight rods in a scene with joints to where anything acts at a point, so
 /// that legs end there (leg_mesh.cpp); reports rods with too few nodes.
 void place_leg_ends(CheckContext& context);
+/// Makes arc lengths along the curves of rods those along their edges, as the model counts them.
+void count_along_edges(CheckContext& context);
 /// The joint of this name; null, and a report at `path`, where there is none.
 const Joint* find_joint(CheckContext& context, const std::string& name, const Path& path);
 /// That the rods of each joint meet, and that this version has all that a scene with joints needs.

@@ -160,7 +160,10 @@ class SchemaBuilder {
       Json one{{"required", branch}};
       for (const auto& other : alternatives.branches) {
         if (&other == &branch) continue;
-        for (const std::string& key : other) one["properties"][key] = false;
+        for (const std::string& key : other) {
+          const bool shared = std::find(branch.begin(), branch.end(), key) != branch.end();
+          if (!shared) one["properties"][key] = false;
+        }
       }
       result.push_back(std::move(one));
     }

@@ -6,6 +6,7 @@
 #include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/resampled_rod.hpp"
+#include "scenario/segments.hpp"
 #include "scenario/suggestion.hpp"
 
 namespace der::scenario {
@@ -16,7 +17,7 @@ namespace {
 constexpr double kSamePoint = 2e-5;
 
 /// Why something has a place.
-enum class Role { Joint, Acts, IsRead };
+enum class Role { Border, Joint, Acts, IsRead };
 
 /// A place of a rod, by the key that names it.
 struct NamedPlace {
@@ -58,7 +59,7 @@ void name_by_arc_length(const RestLine& line, Location& at) {
 }
 
 /// The places inside a rod where legs end, ascending. Those that are nearly one become one: that of
-/// a joint, whose rods meet there, if there is one.
+/// a border of the drawn shape, or of a joint, whose rods meet there, if there is one.
 std::vector<double> leg_ends(const RestLine& line, const Places& places) {
   const double near = kSamePoint * line.length();
   Places inside;
@@ -84,133 +85,103 @@ std::vector<double> leg_ends(const RestLine& line, const Places& places) {
     const double from = inside[first].at->arc_length;
     while (last < inside.size() && inside[last].at->arc_length <= from + near) ++last;
     std::size_t chosen = first;
-    for (std::size_t i = first; i < last && inside[chosen].role != Role::Joint; ++i) {
-      if (inside[i].role == Role::Joint) chosen = i;
+    for (std::size_t i = first; i < last; ++i) {
+      if (inside[i].role < inside[chosen].role) chosen = i;
     }
     ends.push_back(inside[chosen].at->arc_length);
+    const bool all = inside[chosen].role == Role::Border;
     for (; first < last; ++first) {
-      if (inside[first].role != Role::Joint) inside[first].at->arc_length = ends.back();
+      if (all || inside[first].role != Role::Joint) inside[first].at->arc_length = ends.back();
     }
   }
   return ends;
 }
 
-/// Shares cells out among legs of these lengths, one each at least, so that the longest cell is as
-/// short as can be.
-std::vector<int> share_out(int cells, const std::vector<double>& lengths, double whole) {
-  std::vector<int> counts;
-  int given = 0;
-  for (const double length : lengths) {
-    counts.push_back(std::max(1, static_cast<int>(cells * (length / whole) * (1.0 - 1e-12))));
-    given += counts.back();
-  }
-  constexpr double kLonger = 1.0 + 1e-9;  // of equal legs the first has one more, not a rounded one
-  const auto cell = [&](std::size_t leg, int more) { return lengths[leg] / (counts[leg] + more); };
-  for (; given != cells; given += given < cells ? 1 : -1) {
-    std::size_t chosen = lengths.size();
-    for (std::size_t leg = 0; leg < lengths.size(); ++leg) {
-      if (given > cells && counts[leg] == 1) continue;
-      const bool better =
-          chosen == lengths.size() || (given < cells ? cell(leg, 0) > kLonger * cell(chosen, 0)
-                                                     : cell(leg, -1) * kLonger < cell(chosen, -1));
-      if (better) chosen = leg;
-    }
-    counts[chosen] += given < cells ? 1 : -1;
-  }
-  return counts;
+/// Where an arc length [m] is among the nodes of a line.
+OldPlace old_place(const RestLine& line, double s) {
+  const int nearest = line.nearest_node(s);
+  const int before =
+      std::clamp(nearest - (s < line.arc_length(nearest) ? 1 : 0), 0, line.num_nodes() - 2);
+  const double from = line.arc_length(before);
+  return {before, (s - from) / (line.arc_length(before + 1) - from)};
 }
 
-/// Places the nodes of a straight rod evenly on each leg: as many cells as the scene's `nodes` say,
-/// each cut into as many as `subdivide` says.
-void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends,
-                 const std::vector<int>& jumps, double length) {
+/// Places the nodes of a rod on its curve, evenly on each leg: as many cells as the scene's `nodes`
+/// say, each cut into as many as `subdivide` says. `jumps`: of its list of natural curvatures.
+RestLine place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends,
+                     const std::vector<int>& jumps, const RestLine& line) {
+  const double drawn = text.curve->length() / line.length();
   std::vector<double> bounds{0.0};
-  bounds.insert(bounds.end(), ends.begin(), ends.end());
-  bounds.push_back(length);
+  for (const double end : ends) bounds.push_back(drawn * end);
+  bounds.push_back(text.curve->length());
   std::vector<double> lengths;
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) lengths.push_back(bounds[i + 1] - bounds[i]);
-  const int given = *text.nodes - 1;
-  std::vector<int> cells = share_out(given, lengths, length);
-  std::vector<OldPlace> nodes{{0, 0.0}};
-  rod.points.resize(1);
-  for (std::size_t leg = 0; leg < cells.size(); ++leg) {
-    const int count = cells[leg] * text.subdivide.value_or(1);
-    for (int k = 1; k <= count; ++k) {
-      const double share = (bounds[leg] + lengths[leg] * k / count) / length;
-      const int before = std::clamp(static_cast<int>(share * given), 0, given - 1);
-      nodes.push_back({before, share * given - before});
-      Components point = text.from;
-      for (std::size_t c = 0; c < point.size(); ++c) point[c] += share * (text.to[c] - point[c]);
-      rod.points.push_back(std::move(point));
-    }
-  }
-  rod.points.back() = text.to;
+  std::vector<int> cells = share_out(*text.nodes - 1, lengths);
+  for (int& count : cells) count *= text.subdivide.value_or(1);
+  CurveMesh mesh = mesh_of(*text.curve, bounds, cells);
+  rod.points = std::move(mesh.points);
+  enter_borders(*text.curve, mesh, rod);
+  std::vector<OldPlace> nodes;
+  for (const double s : mesh.arc_length) nodes.push_back(old_place(line, s / drawn));
   resample_lists(nodes, jumps, rod);
+  return rest_line(*text.curve, mesh, rod.points, rod.rest_length);
 }
 
-/// Places the nodes of a straight rod so that legs end where anything acts; none: reports that it
-/// has too few.
-std::optional<RestLine> mesh_straight(CheckContext& context, std::size_t number,
-                                      const Places& places) {
+void place_leg_ends(CheckContext& context, std::size_t number, Places places) {
+  const Path path{"rods", static_cast<int>(number)};
+  std::optional<RestLine>& line = context.lines[number];
   RodText& text = context.scene.given_rods[number];
   Rod& rod = context.scene.rods[number];
-  const RestLine& line = *context.lines[number];
-  Places all = places;
-  // The two sides of a jump are smooth, each by itself.
-  const std::vector<int> jumps = natural_jumps(rod, line.length() / (*text.nodes - 1));
-  std::vector<Location> at_jumps;
-  for (const int node : jumps) {
-    at_jumps.emplace_back().kind = Location::Kind::Node;
-    at_jumps.back().node = node;
+  if (!text.nodes || rod.closed) return;  // those of a rod drawn by points stay
+  std::deque<Location> others;
+  for (const CurveBorder& border : text.curve->borders()) {
+    Location& at = others.emplace_back();
+    at.kind = Location::Kind::ArcLength;
+    at.arc_length = border.arc_length / text.curve->length() * line->length();
+    places.push_back({&at, Role::Border});
   }
-  for (Location& at : at_jumps) all.push_back({&at, Role::Acts});
-  const std::vector<double> ends = leg_ends(line, all);
+  const bool has_borders = !others.empty();
+  // The two sides of a jump are smooth, each by itself.
+  const std::vector<int> jumps = natural_jumps(rod, line->length() / (*text.nodes - 1));
+  for (const int node : jumps) {
+    Location& at = others.emplace_back();
+    at.kind = Location::Kind::Node;
+    at.node = node;
+    places.push_back({&at, Role::Acts});
+  }
+  const std::vector<double> ends = leg_ends(*line, places);
   const int least = static_cast<int>(ends.size()) + 2;
   if (*text.nodes < least) {
     context.diagnostics.add(
-        Path{"rods", static_cast<int>(number)} / "nodes",
-        fmt::format("things act at {} places inside the rod, and it takes a node at each: write "
+        path / "nodes",
+        fmt::format("things act at {} places inside the rod{}, and it takes a node at each: write "
                     "{} or more",
-                    ends.size(), least));
-    return std::nullopt;
+                    ends.size(), has_borders ? ", or its shape has borders there" : "", least));
+    line.reset();
+    return;
   }
-  place_nodes(text, rod, ends, jumps, line.length());
-  return RestLine(rod.points, false, rod.rest_length);
+  line = place_nodes(text, rod, ends, jumps, *line);
 }
 
-/// Where a part of a rod begins or ends.
-struct Border {
+/// Where an actuated part of a rod begins or ends.
+struct PartEnd {
   double* value = nullptr;  ///< [m]
   std::string rod;
-  Role role = Role::IsRead;
   Location at{};
 };
 
-/// Those of actuations and of loads along rods. Where an actuated curvature begins or ends it
-/// jumps.
-std::deque<Border> borders_of(SceneText& scene) {
-  std::deque<Border> borders;
-  const auto enter = [&](const std::string& rod, double& value, Role role) {
-    Border& border = borders.emplace_back(Border{&value, rod, role});
-    border.at.kind = Location::Kind::ArcLength;
-    border.at.arc_length = value;
-  };
+/// Those of actuated curvatures, which jump there.
+std::deque<PartEnd> ends_of_parts(SceneText& scene) {
+  std::deque<PartEnd> ends;
   for (Actuation& actuation : scene.actuations) {
-    const Role role = actuation.what == Actuated::Length ? Role::IsRead : Role::Acts;
-    enter(actuation.rod, actuation.from, role);
-    enter(actuation.rod, actuation.to, role);
+    if (actuation.what == Actuated::Length) continue;
+    for (double* value : {&actuation.from, &actuation.to}) {
+      PartEnd& end = ends.emplace_back(PartEnd{value, actuation.rod});
+      end.at.kind = Location::Kind::ArcLength;
+      end.at.arc_length = *value;
+    }
   }
-  for (Load& load : scene.loads) {
-    std::visit(
-        [&](auto& what) {
-          if constexpr (std::is_base_of_v<OnPart, std::decay_t<decltype(what)>>) {
-            enter(what.rod, what.from, Role::IsRead);
-            enter(what.rod, what.to, Role::IsRead);
-          }
-        },
-        load.what);
-  }
-  return borders;
+  return ends;
 }
 
 /// Gives all that stands on a joint the place of the joint's first member that bends, or else of
@@ -301,10 +272,11 @@ void place_leg_ends(CheckContext& context) {
   SceneText& scene = context.scene;
   for (std::size_t i = 0; i < scene.given_rods.size(); ++i) {
     if (!scene.given_rods[i].subdivide) continue;
-    if (!scene.joints.empty() && scene.given_rods[i].nodes) continue;
+    const bool by_shape = !scene.given_rods[i].shape.empty();
+    if ((!scene.joints.empty() || by_shape) && scene.given_rods[i].nodes) continue;
     context.diagnostics.add(Path{"rods", static_cast<int>(i)} / "subdivide",
-                            "is for straight rods in a scene with joints: write the number of "
-                            "'nodes', or more 'points'");
+                            "is for rods with a 'shape', and for straight ones in a scene with "
+                            "joints: write the number of 'nodes', or more 'points'");
   }
   name_members(context);
   if (scene.joints.empty()) return;
@@ -314,22 +286,67 @@ void place_leg_ends(CheckContext& context) {
     if (rod != context.rods.end())
       places[static_cast<std::size_t>(rod->second)].push_back({&at, role});
   });
-  std::deque<Border> borders = borders_of(scene);
-  for (Border& border : borders) {
-    const auto rod = context.rods.find(border.rod);
+  std::deque<PartEnd> ends = ends_of_parts(scene);
+  for (PartEnd& end : ends) {
+    const auto rod = context.rods.find(end.rod);
     if (rod == context.rods.end()) continue;
-    places[static_cast<std::size_t>(rod->second)].push_back({&border.at, border.role});
+    places[static_cast<std::size_t>(rod->second)].push_back({&end.at, Role::Acts});
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
-    std::optional<RestLine>& line = context.lines[i];
-    if (line && scene.given_rods[i].nodes) line = mesh_straight(context, i, places[i]);
+    if (context.lines[i]) place_leg_ends(context, i, places[i]);
   }
-  for (const Border& border : borders) {
-    const auto rod = context.rods.find(border.rod);
+  for (const PartEnd& end : ends) {
+    const auto rod = context.rods.find(end.rod);
     if (rod == context.rods.end()) continue;
     if (const auto& line = context.lines[static_cast<std::size_t>(rod->second)]) {
-      *border.value = line->arc_length_of(border.at);
+      *end.value = line->arc_length_of(end.at);
     }
+  }
+}
+
+void count_along_edges(CheckContext& context) {
+  SceneText& scene = context.scene;
+  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
+    const Rod& rod = scene.rods[i];
+    const auto& curve = scene.given_rods[i].curve;
+    if (!curve || curve->is_polyline()) continue;
+    const RestLine& along_curve = *context.lines[i];
+    const RestLine along_edges(rod.points, rod.closed, rod.rest_length);
+    const auto moved = [&](double s) {
+      const auto place = [](const RestLine& line, int node) {
+        return node < line.num_nodes() ? line.arc_length(node) : line.length();
+      };
+      const int nearest = along_curve.nearest_node(s);
+      const int before = std::clamp(nearest - (s < along_curve.arc_length(nearest) ? 1 : 0), 0,
+                                    rod.num_edges() - 1);
+      const double from = place(along_curve, before);
+      const double share = (s - from) / (place(along_curve, before + 1) - from);
+      return place(along_edges, before) +
+             share * (place(along_edges, before + 1) - place(along_edges, before));
+    };
+    const auto move = [&](const std::string& name, Location& at) {
+      const bool is_middle = at.kind == Location::Kind::Middle;
+      if (name != rod.name || !(is_middle || at.kind == Location::Kind::ArcLength)) return;
+      at.arc_length = moved(along_curve.arc_length_of(at));
+      at.kind = Location::Kind::ArcLength;
+    };
+    for_each_place(scene, [&](const std::string& name, Location& at, Role) { move(name, at); });
+    for (Probe& probe : scene.output.probes) {
+      if (probe.rod && probe.at) move(*probe.rod, *probe.at);
+    }
+    const auto move_part = [&](auto& part) {
+      if (part.rod != rod.name) return;
+      part.from = moved(part.from);
+      part.to = moved(part.to);
+    };
+    for (Load& load : scene.loads) {
+      std::visit(
+          [&](auto& what) {
+            if constexpr (std::is_base_of_v<OnPart, std::decay_t<decltype(what)>>) move_part(what);
+          },
+          load.what);
+    }
+    for (Actuation& actuation : scene.actuations) move_part(actuation);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "scenario/rest_line.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "der/core/nearest_node.hpp"
 #include "der/scenario/rod.hpp"
@@ -20,6 +21,16 @@ RestLine::RestLine(const std::vector<Components>& points, bool closed,
   }
   length_ = arc_length_.back();
   if (closed) length_ += distance(points.back(), points.front());
+  set_rest_length(rest_length);
+}
+
+RestLine::RestLine(std::vector<double> arc_length, double length, bool closed,
+                   std::optional<double> rest_length)
+    : arc_length_(std::move(arc_length)), length_(length), closed_(closed) {
+  set_rest_length(rest_length);
+}
+
+void RestLine::set_rest_length(std::optional<double> rest_length) {
   if (!rest_length) return;
   for (double& s : arc_length_) s *= *rest_length / length_;
   length_ = *rest_length;

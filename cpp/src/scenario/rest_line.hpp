@@ -19,6 +19,10 @@ class RestLine {
   explicit RestLine(const std::vector<Components>& points, bool closed = false,
                     std::optional<double> rest_length = std::nullopt);
 
+  /// Of a curve: `arc_length` [m] of the nodes on it, and its own `length` [m].
+  RestLine(std::vector<double> arc_length, double length, bool closed,
+           std::optional<double> rest_length);
+
   [[nodiscard]] int num_nodes() const { return static_cast<int>(arc_length_.size()); }
   [[nodiscard]] bool closed() const { return closed_; }
   [[nodiscard]] double length() const { return length_; }
@@ -39,6 +43,8 @@ class RestLine {
   std::vector<double> arc_length_;  // of each node [m]
   double length_ = 0.0;             // [m]
   bool closed_;
+
+  void set_rest_length(std::optional<double> rest_length);
 };
 
 }  // namespace der::scenario

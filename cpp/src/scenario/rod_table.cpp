@@ -211,27 +211,92 @@ Format<CurvatureMeasure> curvature_format() {
        {{"tangent", "the classic 2 tan(turning angle / 2)"}, CurvatureMeasure::Tangent}});
 }
 
+Format<ArcTo> arc_format() {
+  return mapping(
+      Table<ArcTo>("arc", "A part of a circle.")
+          .required("to", &ArcTo::to, vector("m"), "Where it ends.")
+          .optional("through", &ArcTo::through, vector("m"), "A point on it between its ends.")
+          .optional("centre", &ArcTo::centre, vector("m"),
+                    "Centre of the circle, as far from both ends to four digits. It gives the "
+                    "shorter of two arcs.")
+          .optional("radius", &ArcTo::radius, number("m"),
+                    "In a plane: the radius, positive if the arc turns to the left "
+                    "(counter-clockwise), negative if to the right. It gives the shorter of two "
+                    "arcs.")
+          .optional("longer", &ArcTo::longer, boolean(),
+                    "With `centre` or `radius`: whether it is the longer of the two arcs.")
+          .either({{"through"}, {"centre"}, {"radius"}}));
+}
+
+Format<HelixAround> helix_format() {
+  return mapping(
+      Table<HelixAround>("helix", "A helix in space; with pitch 0 a circle.")
+          .required("axis", &HelixAround::axis, space_vector(""),
+                    "Direction of its axis, of any length. The helix turns about it by the "
+                    "right-hand rule.")
+          .optional("centre", &HelixAround::centre, space_vector("m"),
+                    "A point of the axis. The radius is the distance of the helix's start.")
+          .optional("radius", &HelixAround::radius, number("m", positive()),
+                    "Radius. The start is then on the side of +x of the axis, or of +y where the "
+                    "axis runs along x.")
+          .either({{"centre"}, {"radius"}})
+          .required("pitch", &HelixAround::pitch, number("m"),
+                    "How far it goes along the axis in a turn. Negative: against the axis, as a "
+                    "left-handed helix.")
+          .required("turns", &HelixAround::turns, number("", positive()), "Number of turns."));
+}
+
+/// Exactly one of the kinds.
+Format<SegmentText> segment_format() {
+  const auto assign_segment = [](SegmentText& segment, auto&& kind) {
+    segment.what = std::forward<decltype(kind)>(kind);
+  };
+  return mapping(
+      Table<SegmentText>("segment",
+                         "A part of a rod's shape. It begins where the one before ends, the first "
+                         "one at `from`.")
+          .kind(
+              "line", vector("m"),
+              [](SegmentText& segment, Components&& to) { segment.what = LineTo{std::move(to)}; },
+              "A straight line to this point.")
+          .kind("arc", arc_format(), assign_segment, "An arc.")
+          .kind("helix", helix_format(), assign_segment, "A helix, in space.")
+          .kind(
+              "spline", list_of(vector("m"), 1),
+              [](SegmentText& segment, std::vector<Components>&& points) {
+                segment.what = SplineThrough{std::move(points)};
+              },
+              "A cubic spline through these points."));
+}
+
 }  // namespace
 
 Format<RodText> rod_format() {
   constexpr double max_nodes = 1'000'000;
   return mapping(
-      Table<RodText>("rod",
-                     "An elastic rod, drawn as a straight line or a polyline, with a node at "
-                     "each corner, or as a ring of such edges.")
+      Table<RodText>(
+          "rod",
+          "An elastic rod, drawn as a straight line, by segments or by its nodes, or as a "
+          "ring of such.")
           .required("name", &Rod::name, name(),
                     "Supports, loads, probes and override paths refer to it.")
-          .optional("subdivide", &RodText::subdivide, integer({1, false, max_nodes}),
-                    "In a scene with joints: into how many each element is cut that `nodes` gives.",
-                    "1")
-          .optional("nodes", &RodText::nodes, integer({2, false, max_nodes}),
-                    "Number of nodes, evenly spaced over `from` .. `to`; a rod bends at its inner "
-                    "nodes, so it takes 3 to bend.")
-          .optional("from", &RodText::from, vector("m"), "First node of a straight rod.")
+          .optional(
+              "subdivide", &RodText::subdivide, integer({1, false, max_nodes}),
+              "With `shape`, and in a scene with joints: into how many each element is cut that "
+              "`nodes` gives.",
+              "1")
+          .optional(
+              "nodes", &RodText::nodes, integer({2, false, max_nodes}),
+              "Number of nodes, evenly spaced over `from` .. `to`, or over each part of `shape` "
+              "between corners and jumps of its curvature; a rod bends at its inner nodes, so "
+              "it takes 3 to bend.")
+          .optional("from", &RodText::from, vector("m"), "Where the rod begins.")
           .optional("to", &RodText::to, vector("m"), "Last node of a straight rod.")
+          .optional("shape", &RodText::shape, list_of(segment_format(), 1),
+                    "The curve of the rod, segment by segment.")
           .optional("points", &RodText::given_points, list_of(vector("m"), 2),
                     "The nodes, one by one.")
-          .either({{"nodes", "from", "to"}, {"points"}})
+          .either({{"nodes", "from", "to"}, {"nodes", "from", "shape"}, {"points"}})
           .optional("rest_length", &Rod::rest_length, number("m", positive()),
                     "Length without stress, for a cable that is longer than its span or a string "
                     "that is shorter: from half the length as drawn to twice. All edges share the "
@@ -256,8 +321,8 @@ Format<RodText> rod_format() {
           .optional("initial_twist", &Rod::initial_twist, number("rad/m"),
                     "Twist as drawn, right-handed: the director turns about the rod so much.")
           .optional("closed", &Rod::closed, boolean(),
-                    "Whether one more edge joins the last node and the first, so that the rod is a "
-                    "ring; the first node is not repeated.")
+                    "Whether the rod is a ring: one more edge joins the last node and the first, "
+                    "which is not repeated. A `shape` leads back to `from`.")
           .optional("initial_velocity", &RodText::given_velocity, velocities_format(),
                     "One vector for all nodes, or one for each.", "at rest")
           .optional("spheres", &Rod::spheres, list_of(sphere_format(), 0),

@@ -102,11 +102,29 @@ struct Example {
   std::string_view table;
   std::string_view lines;
 };
-constexpr std::array<Example, 33> kExamples{{
+constexpr std::array<Example, 36> kExamples{{
     {"rod", R"(rods:
   - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
      cross_section: {circle: {radius: 5 mm}},
      material: {youngs_modulus: 70 GPa, density: 2700}})"},
+    {"segment", R"(rods:
+  - {name: rod, nodes: 41, from: [0, 0],
+     shape: [{line: [0.5, 0]}, {arc: {to: [0.7, 0.2], radius: 200 mm}},
+             {spline: [[0.6, 0.4], [0.8, 0.5], [1, 0.4]]}],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}})"},
+    {"arc", R"(rods:
+  - {name: rod, nodes: 41, from: [0, 0],
+     shape: [{arc: {to: [1, 0], through: [0.5, 0.05]}}, {arc: {to: [1.5, 0], centre: [1.25, 1]}}],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}})"},
+    {"helix", R"(rods:
+  - {name: rod, nodes: 201, from: [0.1, 0, 0],
+     shape: [{helix: {axis: [0, 0, 1], centre: [0, 0, 0], pitch: 30 mm, turns: 5}}],
+     cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, poissons_ratio: 0.33, density: 2700}}
+loads:
+  - gravity: [0, 0, -9.81])"},
     {"circle", R"(rods:
   - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
      cross_section: {circle: {radius: 5 mm}},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -19,6 +20,35 @@ struct SectionText {
   std::optional<Components> director;
 };
 
+/// The segments of `shape:`. Each begins where the one before ends.
+struct LineTo {
+  Components to;
+};
+/// `through`, or `centre`, or `radius` [m], in the plane.
+struct ArcTo {
+  Components to;
+  std::optional<Components> through;
+  std::optional<Components> centre;
+  std::optional<double> radius;
+  bool longer = false;  ///< the longer one of the two arcs about a centre or with a radius
+};
+/// `centre` or `radius` [m].
+struct HelixAround {
+  Components axis;
+  std::optional<Components> centre;
+  std::optional<double> radius;
+  double pitch = 0.0;  ///< [m]
+  double turns = 0.0;
+};
+struct SplineThrough {
+  std::vector<Components> points;
+};
+struct SegmentText {
+  std::variant<LineTo, ArcTo, HelixAround, SplineThrough> what;
+};
+
+class DrawnCurve;
+
 struct RodText : Rod {
   SectionText section;
   std::vector<Components> given_points;  ///< or:
@@ -26,6 +56,8 @@ struct RodText : Rod {
   std::optional<int> subdivide;
   Components from;
   Components to;
+  std::vector<SegmentText> shape;           ///< in place of `to`
+  std::shared_ptr<const DrawnCurve> curve;  ///< of a rod with `from`
   Velocities given_velocity;
 };
 

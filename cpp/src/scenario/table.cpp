@@ -152,18 +152,49 @@ class KeyReader {
   }
 
   void check(const Alternatives& alternatives) {
-    const std::vector<std::string>* chosen = nullptr;
-    for (const auto& branch : alternatives.branches) {
-      const auto given = std::find_if(branch.begin(), branch.end(),
-                                      [&](const std::string& key) { return seen(key) != nullptr; });
-      if (given == branch.end()) continue;
-      if (chosen) {
-        report(*seen(*given), fmt::format("{} exclude{} {}: give {}", listed(branch),
-                                          branch.size() == 1 ? "s" : "", listed(*chosen),
-                                          described(alternatives)));
-        return;
+    using Branch = std::vector<std::string>;
+    const auto has = [](const Branch& branch, const std::string& key) {
+      return std::find(branch.begin(), branch.end(), key) != branch.end();
+    };
+    const auto without = [&](const Branch& branch, const Branch& other) {
+      Branch rest;
+      for (const std::string& key : branch) {
+        if (!has(other, key)) rest.push_back(key);
       }
-      chosen = &branch;
+      return rest;
+    };
+    Branch given;
+    for (const Branch& branch : alternatives.branches) {
+      for (const std::string& key : branch) {
+        if (seen(key) && !has(given, key)) given.push_back(key);
+      }
+    }
+    // The first branch with all that is given; branches may share keys.
+    const Branch* chosen = nullptr;
+    for (const Branch& branch : alternatives.branches) {
+      if (!given.empty() && without(given, branch).empty()) {
+        chosen = &branch;
+        break;
+      }
+    }
+    if (!chosen && !given.empty()) {
+      const auto& branches = alternatives.branches;
+      // Of those with the first key the one that has the most.
+      const Branch* first = nullptr;
+      for (const Branch& branch : branches) {
+        const auto beyond = [&](const Branch& each) { return without(given, each).size(); };
+        if (has(branch, given.front()) && (!first || beyond(branch) < beyond(*first))) {
+          first = &branch;
+        }
+      }
+      const std::string key = without(given, *first).front();
+      const Branch& other = *std::find_if(branches.begin(), branches.end(),
+                                          [&](const Branch& branch) { return has(branch, key); });
+      const Branch excluding = without(other, *first);
+      report(*seen(key), fmt::format("{} exclude{} {}: give {}", listed(excluding),
+                                     excluding.size() == 1 ? "s" : "",
+                                     listed(without(*first, other)), described(alternatives)));
+      return;
     }
     if (chosen) {
       for (const std::string& key : *chosen) {

@@ -93,9 +93,10 @@ def with_elements(
     """Return the scene with `factor` times as many elements in every rod that allows it.
 
     Old nodes stay where they are when `factor` is a whole number: supports, loads and probes keep
-    their places, `{node: k}` becomes `{node: factor * k}`. Rods drawn by points get new nodes on a
-    smooth curve between corners (`der.accuracy.resampling`), or on another one to compare with;
-    lists with a value for each node are interpolated. A factor less than 1 makes the mesh coarser.
+    their places, `{node: k}` becomes `{node: factor * k}`. Rods drawn by a `shape` get new nodes on
+    it. Rods drawn by points get new nodes on a smooth curve between corners
+    (`der.accuracy.resampling`), or on another one to compare with; lists with a value for each node
+    are interpolated. A factor less than 1 makes the mesh coarser.
 
     Raises
     ------
@@ -141,7 +142,8 @@ def with_time(scenario: Scenario, **changes: Any) -> Scenario:
 def _count_nodes(rod: dict[str, Any]) -> int:
     if "points" in rod:
         return len(rod["points"])
-    return (int(rod["nodes"]) - 1) * int(rod.get("subdivide", 1)) + 1
+    more = 0 if rod.get("closed") else 1  # nodes than elements
+    return (int(rod["nodes"]) - more) * int(rod.get("subdivide", 1)) + more
 
 
 def _count_elements(rod: dict[str, Any]) -> int:
@@ -158,14 +160,15 @@ def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
 def _refine_rod(
     scene: dict[str, Any], rod: dict[str, Any], factor: Fraction, other_curve: bool
 ) -> None:
-    if scene.get("joints") and "points" not in rod:
-        # Each leg between joints is cut alike, so that its places stay where they are.
+    places = _Places(rod, factor, other_curve)
+    if "points" not in rod and (scene.get("joints") or "shape" in rod):
+        # Each element is cut alike, so that its ends stay where they are.
         parts = factor * int(rod.get("subdivide", 1))
         if parts.denominator != 1:
             raise ValueError(f"the elements of rod {rod['name']!r} cannot be cut into {parts}")
         rod["subdivide"] = int(parts)
-        return
-    places = _Places(rod, factor, other_curve)
+        if scene.get("joints"):
+            return  # nodes and lists count the elements of `nodes`
     for key in ("natural_curvature", "natural_twist", "initial_velocity"):
         if _is_per_node(rod, key):
             values = np.array(rod[key], dtype=float)
@@ -173,7 +176,7 @@ def _refine_rod(
             rod[key] = resample_list(values, places.elements, closed=closed).tolist()
     if places.points is not None:
         rod["points"] = places.points.tolist()
-    else:
+    elif "shape" not in rod:
         rod["nodes"] = places.elements + 1
     for item in _what_stands_on(scene, rod):
         for key in ("at", "from", "to"):

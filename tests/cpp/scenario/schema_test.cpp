@@ -35,7 +35,9 @@ TEST_CASE("schema: has the keys of the contract and no others") {
   CHECK(rod["properties"]["nodes"]["minimum"] == 2);
   CHECK(rod["properties"]["curvature"]["default"] == "angle");
   CHECK(rod["allOf"][0]["oneOf"][0]["required"] == Json::array({"nodes", "from", "to"}));
-  CHECK(rod["allOf"][0]["oneOf"][1]["properties"]["nodes"] == false);
+  CHECK(rod["allOf"][0]["oneOf"][1]["required"] == Json::array({"nodes", "from", "shape"}));
+  CHECK(rod["allOf"][0]["oneOf"][1]["properties"] == Json{{"to", false}, {"points", false}});
+  CHECK(rod["allOf"][0]["oneOf"][2]["properties"]["nodes"] == false);
   CHECK(schema["$defs"]["tube"]["properties"]["outer_radius"]["exclusiveMinimum"] == 0);
   const Json& load = schema["$defs"]["load"];  // one of the kinds beside a name
   CHECK(load["oneOf"].size() + 1 == load["properties"].size());

@@ -17,12 +17,13 @@ from typing import Any
 import der
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from .readings import JUMPING, Array, Name, Reading, quantities
+from .readings import JUMPING, Array, Name, Reading, lengths, quantities
 from .schema import Scene, mapped, subject
 
 #: Keys of vectors of a scene: places, which move along, and directions and the like, which turn.
-POINTS = {"from", "to", "points", "anchor"}
+POINTS = {"from", "to", "points", "anchor", "line", "through", "centre", "spline"}
 DIRECTIONS = {"axis", "director", "force", "gravity", "initial_velocity", "moment"}
 #: Keys whose values go with the axes of the scene; with those of the sections, which move along.
 ALONG_AXES = {"stiffness"}
@@ -310,10 +311,19 @@ def _reversed_by_order(scene: Scene, name: Name) -> bool:
     return is_recovered(scene, name)
 
 
+@dataclass(frozen=True)
+class _Built:
+    """A rod, and the length along which its places count."""
+
+    rod: der.Rod
+    length: float
+
+
 def _reversed_scene(scene: Scene) -> Scene:
     planar = is_planar(scene)
     model = model_of(scene)
-    rods = {rod.name: rod for rod in model.rods}
+    along = lengths(scene, model)
+    rods = {rod.name: _Built(rod, along[rod.name]) for rod in model.rods}
     scene = copy.deepcopy(scene)
     ends = _end_directors(scene, model)
     for rod in scene["rods"]:
@@ -348,12 +358,17 @@ def _reversed_scene(scene: Scene) -> Scene:
     return scene
 
 
-def _reverse_rod(rod: Scene, built: der.Rod, planar: bool, director: list[float] | None) -> None:
+def _reverse_rod(rod: Scene, built: _Built, planar: bool, director: list[float] | None) -> None:
     def backward(items: list[Any]) -> list[Any]:
         return items[:1] + items[:0:-1] if rod.get("closed") else items[::-1]
 
     if "points" in rod:
         rod["points"] = backward(rod["points"])
+    elif "shape" in rod:
+        ends = _segment_ends(rod)
+        starts = zip(reversed(rod["shape"]), ends[-2::-1], strict=True)
+        rod["shape"] = [_reversed_segment(segment, start) for segment, start in starts]
+        rod["from"] = ends[-1]
     else:
         rod["from"], rod["to"] = rod["to"], rod["from"]
     velocity = rod.get("initial_velocity")
@@ -372,6 +387,65 @@ def _reverse_rod(rod: Scene, built: der.Rod, planar: bool, director: list[float]
         rod["cross_section"]["director"] = director
 
 
+def _segment_ends(rod: Scene) -> list[list[float]]:
+    """Where the shape begins, and where each of its segments ends."""
+    ends = [rod["from"]]
+    for segment in rod["shape"]:
+        ((kind, what),) = segment.items()
+        if kind == "helix":
+            axis = np.array(what["axis"], float)
+            axis /= np.linalg.norm(axis)
+            arm = np.array(ends[-1]) - what["centre"]
+            turn = Rotation.from_rotvec(2.0 * np.pi * what["turns"] * axis)
+            climb = what["pitch"] * what["turns"] * axis
+            ends.append((what["centre"] + turn.apply(arm) + climb).tolist())
+        else:
+            ends.append(what if kind == "line" else what[-1] if kind == "spline" else what["to"])
+    return ends
+
+
+def _reversed_segment(segment: Scene, start: list[float]) -> Scene:
+    """A segment drawn from its other end, to its start."""
+    ((kind, what),) = segment.items()
+    if kind == "line":
+        return {"line": start}
+    if kind == "spline":
+        return {"spline": [*what[-2::-1], start]}
+    if kind == "helix":
+        return {"helix": {**what, "axis": [-each for each in what["axis"]]}}
+    turn = {"radius": -what["radius"]} if "radius" in what else {}
+    return {"arc": {**what, "to": start, **turn}}
+
+
+def cut_segments() -> Law:
+    """Each line, helix and arc about a centre drawn as two."""
+
+    def halves(start: list[float], segment: Scene) -> list[Scene]:
+        ((kind, what),) = segment.items()
+        if kind == "line":
+            return [{"line": ((np.array(start) + what) / 2.0).tolist()}, segment]
+        if kind == "helix":
+            return [{"helix": {**what, "turns": what["turns"] / 2.0}}] * 2
+        if kind != "arc" or "centre" not in what or what.get("longer"):
+            return [segment]
+        centre = np.array(what["centre"])
+        out = (np.array(start) - centre) + (np.array(what["to"]) - centre)
+        out *= np.linalg.norm(np.array(start) - centre) / np.linalg.norm(out)
+        return [{"arc": {**what, "to": (centre + out).tolist()}}, segment]
+
+    def write(scene: Scene) -> Scene:
+        if not any("shape" in rod for rod in scene["rods"]):
+            raise NotApplicableError("no rod is drawn by segments")
+        scene = copy.deepcopy(scene)
+        for rod in scene["rods"]:
+            if "shape" in rod:
+                starts = zip(_segment_ends(rod), rod["shape"], strict=False)
+                rod["shape"] = [half for each in starts for half in halves(*each)]
+        return scene
+
+    return Law(write, lambda scene, readings: dict(readings))
+
+
 def _reversed_curvature(given: Any, planar: bool, *, one: bool) -> Any:
     """The same curvature on the way back; `one`, or a list with one for each node."""
     if not one:
@@ -381,16 +455,16 @@ def _reversed_curvature(given: Any, planar: bool, *, one: bool) -> Any:
     return _negated(given)
 
 
-def _other_place(at: Any, rod: der.Rod) -> Any:
+def _other_place(at: Any, rod: _Built) -> Any:
     if isinstance(at, dict):
-        node, count = at["node"], len(rod.nodes)
-        return {"node": -node % count if rod.closed else count - 1 - node % count}
+        node, count = at["node"], len(rod.rod.nodes)
+        return {"node": -node % count if rod.rod.closed else count - 1 - node % count}
     if isinstance(at, str):
-        return at if rod.closed else {"start": "end", "end": "start"}.get(at, at)
+        return at if rod.rod.closed else {"start": "end", "end": "start"}.get(at, at)
     return rod.length - at
 
 
-def _reverse_part(part: Scene, rod: der.Rod) -> None:
+def _reverse_part(part: Scene, rod: _Built) -> None:
     """Begin at the other end of a part; where it reaches an end of the rod, that stays unsaid."""
     begin, end = part.pop("from", 0.0), part.pop("to", rod.length)
     if end < rod.length:
@@ -403,7 +477,7 @@ def _reverse_part(part: Scene, rod: der.Rod) -> None:
 _ACTUATED = ("natural_curvature", "natural_twist", "elongation")
 
 
-def _reversed_actuation(actuation: Scene, rod: der.Rod, planar: bool) -> list[Scene]:
+def _reversed_actuation(actuation: Scene, rod: _Built, planar: bool) -> list[Scene]:
     """What falls along the rod, a linear profile has as a constant less what rises."""
     _reverse_part(actuation, rod)
     if "natural_curvature" in actuation:

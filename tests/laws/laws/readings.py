@@ -79,11 +79,38 @@ class Place:
     def name(self) -> str:
         return f"law-{self.rod}-{self.quantity}-{round(100 * self.at)}-{self.side}"
 
-    def probe(self, rod: der.Rod) -> Scene:
+    def probe(self, rod: der.Rod, length: float) -> Scene:
         ends = {0.0: "start", 1.0: "end"} if not rod.closed else {}
-        at = ends.get(self.at, self.at * rod.length)
+        at = ends.get(self.at, self.at * length)
         side = {} if self.side is None else {"side": self.side}
         return {"rod": self.rod, "at": at, "quantity": self.quantity, **side}
+
+
+def lengths(scene: Scene, model: der.Model) -> dict[str, float]:
+    """The lengths of all rods, along which places count: of the edges, or of a shape's curve.
+
+    The edges of a shape are shorter by the square of their length.
+    """
+    found = {rod.name: rod.length for rod in model.rods}
+    shapes = [rod["name"] for rod in scene["rods"] if "shape" in rod]
+    if shapes:
+        meshes = [_length_of_edges(scene, parts) for parts in (128, 256)]
+        for name in shapes:
+            coarse, fine = (mesh[name] for mesh in meshes)
+            found[name] = fine + (fine - coarse) / 3.0
+    return found
+
+
+def _length_of_edges(scene: Scene, parts: int) -> dict[str, float]:
+    """Of the rods that are drawn by segments, each element cut so often, as nothing but drawn."""
+    drawn = ("name", "nodes", "from", "shape", "closed", "cross_section", "material")
+    rods = [
+        {key: rod[key] for key in drawn if key in rod} | {"subdivide": parts}
+        for rod in scene["rods"]
+        if "shape" in rod
+    ]
+    model = der.Model(der.Scenario.from_dict({"rods": rods, "time": {"duration": 1, "step": 1}}))
+    return {rod.name: rod.length for rod in model.rods}
 
 
 def read(scene: Scene) -> Answer:
@@ -101,6 +128,7 @@ def _with_probes(scene: Scene) -> tuple[der.Scenario, list[Place]]:
     own = scene.get("output", {}).get("probes", {})
     model = der.Model(der.Scenario.from_dict({**scene, "output": output}))
     rods = {rod.name: rod for rod in model.rods}
+    along = lengths(scene, model)
     places = [
         Place(rod, quantity.name, at, side)
         for rod in rods
@@ -110,7 +138,9 @@ def _with_probes(scene: Scene) -> tuple[der.Scenario, list[Place]]:
         for side in _KINDS[quantity.kind]
     ]
     while True:
-        probes = own | {place.name: place.probe(rods[place.rod]) for place in places}
+        probes = own | {
+            place.name: place.probe(rods[place.rod], along[place.rod]) for place in places
+        }
         try:
             full = {**scene, "output": {**output, "probes": probes}}
             return der.Scenario.from_dict(full), places

@@ -93,8 +93,8 @@ def small(model: str, thing: Thing, nodes: int = NODES) -> Scene:
     """The scene of a model with a thing; with other nodes for things that name none."""
     scene, change = _base(model, nodes), thing(model)
     rod = change.pop("rod", {})
-    if "points" in rod:
-        for key in ("nodes", "from", "to"):
+    if "points" in rod or "shape" in rod:
+        for key in ("nodes", "from", "to", "points"):
             scene["rods"][0].pop(key, None)
     if "cross_section" in rod and model == "spatial":
         rod["cross_section"].setdefault("director", [0.2, 1.0, 0.3])
@@ -214,6 +214,35 @@ def _elbow(model: str) -> list[list[float]]:
 def _ring(model: str) -> list[list[float]]:
     angle = 2 * np.pi * np.arange(12) / 12
     return _in_model(model, np.column_stack([np.cos(angle), 0.7 * np.sin(angle)]) / 5)
+
+
+def _shape(model: str) -> Scene:
+    if model == "planar":
+        shape: list[Scene] = [
+            {"line": [0.3, 0.05]},
+            {"arc": {"to": [0.6, 0.2], "through": [0.46, 0.104]}},
+            {"arc": {"to": [0.65, 0.6], "centre": [0.025, 0.475]}},
+            {"arc": {"to": [0.5, 0.9], "radius": 0.7, "longer": False}},
+            {"spline": [[0.41, 1.1], [0.2, 1.2], [0.0, 1.15]]},
+        ]
+        return {"nodes": 13, "subdivide": 2, "from": [0.0, 0.0], "shape": shape}
+    helix = {"axis": [0.2, 1.0, 0.3], "centre": [0.4, 0.2, 0.75], "pitch": -0.9, "turns": 0.15}
+    shape = [
+        {"line": [0.2, 0.05, 0.1]},
+        {"arc": {"to": [0.4, 0.2, 0.2], "through": [0.31, 0.11, 0.16]}},
+        {"helix": helix},
+        {"spline": [[-0.1, 0.2, 0.8], [-0.1, 0.3, 1.0], [0.0, 0.4, 1.1]]},
+    ]
+    return {"nodes": 26, "from": [0.0, 0.0, 0.0], "shape": shape}
+
+
+def _round(model: str) -> Scene:
+    if model == "planar":
+        arc = {"to": [0.4, 0.0], "through": [0.2, -0.1]}
+        shape: list[Scene] = [{"arc": arc}, {"line": [0.15, 0.3]}, {"line": [0.0, 0.0]}]
+        return {"closed": True, "nodes": 20, "from": [0.0, 0.0], "shape": shape}
+    helix = {"axis": [0.2, 1.0, 0.3], "centre": [0.0, 0.0, 0.3], "pitch": 0, "turns": 1}
+    return {"closed": True, "nodes": 16, "from": [0.3, 0.0, 0.1], "shape": [{"helix": helix}]}
 
 
 def _uneven(model: str) -> list[list[float]]:
@@ -557,6 +586,8 @@ THINGS: dict[str, tuple[tuple[str, ...], Thing]] = {
     ),
     "ring": (TWISTS, lambda m: {"rod": {"points": _ring(m), "closed": True}}),
     "uneven edges": (TWISTS, lambda m: {"rod": {"points": _uneven(m)}}),
+    "shape": (TWISTS, lambda m: {"rod": _shape(m)}),
+    "round shape": (TWISTS, lambda m: {"rod": _round(m)}),
     "three nodes": (TWISTS, lambda m: {"rod": {"points": _uneven(m)[::4]}}),
     "cable": (
         UNTWISTED,

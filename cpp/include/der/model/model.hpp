@@ -172,6 +172,8 @@ struct RodMesh {
   std::vector<CellHalves> cell_halves;  ///< of the vertices whose halves differ
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
+  /// Places of the corners of a rod whose drawn curve is known, ascending; absent: guessed.
+  std::optional<std::vector<Index>> drawn_corners;
   std::vector<CurvatureJump> reference_jumps;  ///< of the curvature of the drawn shape, ascending
   /// Jumps of the natural curvature and twist, and so of those of any equilibrium, ascending.
   std::vector<CurvatureJump> natural_jumps;

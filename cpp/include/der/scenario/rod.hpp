@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -35,11 +36,24 @@ using NaturalCurvature = std::variant<StressFreeReference, double, std::vector<d
 /// Natural twist [rad/m]: one value, or one for each node, linear in between.
 using NaturalTwist = std::variant<StressFreeReference, double, std::vector<double>>;
 
+/// What is known of the curve of a rod that is drawn by `from`; of one drawn by `points` it has to
+/// be guessed.
+struct DrawnBorders {
+  struct Jump {
+    int node = 0;
+    std::array<double, 3> turn{};  ///< of the curvature, after less before [1/m]
+  };
+  std::vector<int> corners;  ///< nodes, ascending
+  std::vector<Jump> jumps;   ///< ascending
+};
+
 struct Rod {
   std::string name;
-  /// Initial node positions [m], one per node (from `points`, or spaced evenly over `from`..`to`).
+  /// Initial node positions [m], one per node (from `points`, or spaced evenly over `from`..`to`,
+  /// or over each part of the curve of a `shape`).
   std::vector<Components> points;
-  bool closed = false;  ///< whether an edge joins the last node and the first
+  std::optional<DrawnBorders> borders;  ///< absent: drawn by `points`
+  bool closed = false;                  ///< whether an edge joins the last node and the first
   /// Length without stress [m]; absent: as drawn. All edges share the difference alike.
   std::optional<double> rest_length;
   CrossSection cross_section;

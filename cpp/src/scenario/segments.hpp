@@ -5,29 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "scenario/curve_parts.hpp"
 #include "scenario/directions.hpp"
 #include "scenario/rest_line.hpp"
 #include "scenario/scene_text.hpp"
 
 /// Rods drawn by segments: the exact curve, and nodes on it.
 namespace der::scenario {
-
-/// A smooth part of a drawn curve. Places on it are shares of its length, from 0 to 1.
-class CurvePart {
- public:
-  CurvePart() = default;
-  CurvePart(const CurvePart&) = delete;
-  CurvePart& operator=(const CurvePart&) = delete;
-  virtual ~CurvePart() = default;
-
-  [[nodiscard]] virtual double length() const = 0;  ///< [m]
-  [[nodiscard]] virtual Vec3 point(double share) const = 0;
-  /// Unit vector.
-  [[nodiscard]] virtual Vec3 tangent(double share) const = 0;
-  /// The vector about which the curve turns [1/m].
-  [[nodiscard]] virtual Vec3 curvature(double share) const = 0;
-  [[nodiscard]] virtual bool straight() const { return false; }
-};
 
 /// Where two parts meet that do not go on as one curve.
 struct CurveBorder {

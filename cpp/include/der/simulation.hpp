@@ -280,7 +280,8 @@ class Simulation {
   };
   [[nodiscard]] Forces forces() const;
   /// Moves `found` to the equilibrium of legs of order 2, if there is one: edges that know their
-  /// arcs take Newton's method from less far. Does nothing where the legs are of order 2.
+  /// arcs take Newton's method from less far. Does nothing where the legs are of order 2. Returns
+  /// how many saddles the search has left.
   int approach(const EquilibriumOptions& options, State& found);
   /// Made when it is first asked for; null where there is none. It calls `beat` from now on.
   OutOfPlaneTest* out_of_plane_test(const CancelCallback& beat);

@@ -186,7 +186,38 @@ def test_a_natural_curvature_that_jumps_at_a_node(fitted_order):
         assert column[-1] < 1e-7 or fitted_order(1 / np.array([20, 40, 80]), column) > 1.85
 
 
-def test_edges_of_unlike_lengths_beside_a_joint(fitted_order):
+def test_a_joint_tells_a_spring_from_a_moment_beside_it():
+    """A third of an edge apart; the example of docs/joints.md, "A joint of one rod"."""
+    spring, moment, place, beside = 5.0, 2.0, 0.5, 0.50375
+    bent = moment / (1 + spring * place / EI)
+    tip = arcs([(place, bent / EI), (beside - place, moment / EI), (1 - beside, 0.0)])[1]
+    off = {}
+    for count, jointed in ((21, True), (81, True), (81, False)):
+        at = {"rod": "beam", "at": place}
+        scene = {
+            "rods": [{"name": "beam", "nodes": count, "from": [0, 0], "to": [1, 0]}],
+            "joints": [{"name": "pivot", "of": [at]}] if jointed else [],
+            "supports": [
+                {"rod": "beam", "at": "start", "clamp": True},
+                {**at, "spring": {"rotational_stiffness": spring}},
+            ],
+            "loads": [{"moment": {"rod": "beam", "at": beside, "moment": moment}}],
+            "analysis": "static",
+            "output": {"probes": {"tip": {"rod": "beam", "at": "end", "quantity": "y"}}},
+        }
+        scene["rods"][0] |= stiffness(1e6, EI)
+        if not jointed:
+            del scene["joints"]
+        result = der.run(scene)
+        off[count, jointed] = abs(result.probes["tip"][-1] - tip)
+        told = any("joints: [{name: here, of: [{rod: beam" in w for w in result.summary["warnings"])
+        assert told is not jointed
+    assert off[21, True] < 1e-9
+    assert off[81, True] < 1e-11
+    assert off[81, False] > 1e-3  # of order 1, as the warning says
+
+
+def test_edges_of_unlike_lengths_beside_a_joint():
     """An edge of a tenth of the others next to a spring: the end of a leg has none such."""
     load, spring = 1e-5, 5.0
     # Clamped at 0, sprung at 0.5 about its rotation, loaded at the end: small deflection.

@@ -23,16 +23,19 @@ Index edge_at(double s, const RodMesh& rod) {
                            rod.num_edges() - 1);
 }
 
-bool bends(const ActuatedStretch& stretch) { return stretch.what == scenario::Actuated::Curvature; }
+bool changes_curvature(const ActuatedStretch& stretch) {
+  return stretch.what == scenario::Actuated::Curvature;
+}
 
 bool any_bends(const RodMesh& rod) {
-  return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(), bends);
+  return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(),
+                     changes_curvature);
 }
 
 /// Arc lengths [m] at which an actuated curvature jumps.
 void add_actuated_jumps(const RodMesh& rod, std::vector<double>& places) {
   for (const ActuatedStretch& stretch : rod.actuated_stretches) {
-    if (!bends(stretch)) continue;
+    if (!changes_curvature(stretch)) continue;
     if (stretch.jumps(false)) places.push_back(stretch.from);
     if (stretch.jumps(true)) places.push_back(stretch.to);
   }

@@ -325,8 +325,9 @@ void count_along_edges(CheckContext& context) {
              share * (place(along_edges, before + 1) - place(along_edges, before));
     };
     const auto move = [&](const std::string& name, Location& at) {
-      const bool is_middle = at.kind == Location::Kind::Middle;
-      if (name != rod.name || !(is_middle || at.kind == Location::Kind::ArcLength)) return;
+      const bool is_place =
+          at.kind == Location::Kind::Middle || at.kind == Location::Kind::ArcLength;
+      if (name != rod.name || !is_place) return;
       at.arc_length = moved(along_curve.arc_length_of(at));
       at.kind = Location::Kind::ArcLength;
     };

@@ -326,6 +326,27 @@ def test_smooth_curves_have_no_jumps_of_the_curvature():
     assert find_curvature_jumps(rounded) == []
 
 
+def test_a_piece_of_one_edge_between_two_jumps_has_both_curves():
+    """A line of uneven edges that runs into an arc: guessed jumps at two neighbouring nodes."""
+    points = np.array(
+        [
+            [0.0, 0.0],
+            [0.075, 0.0],
+            [0.15, 0.0],
+            [0.58, 0.0],
+            [0.6, 0.0],
+            [0.69933, 0.00997],
+            [0.72941, 0.01704],
+            [0.85, 0.06699],
+        ]
+    )
+    assert find_curvature_jumps(points) == [3, 4]
+    for other in (False, True):
+        finer = resample(points, Fraction(2), other_curve=other)
+        np.testing.assert_array_equal(finer[::2], points)
+        np.testing.assert_allclose(finer[7], [0.59, 0.0], atol=1e-4)
+
+
 def test_narrow_peaks_have_no_certain_jumps():
     """Their flanks look like jumps of the curvature. Other curves through the points are smooth."""
     share = np.linspace(0.0, 1.0, 20)

@@ -241,3 +241,54 @@ def test_edges_of_unlike_lengths_beside_a_joint():
         scene["rods"][0] |= stiffness(1e7, EI)
         errors.append(abs(der.run(scene).probes["tip"][-1] / sag - 1))
     assert max(errors) < 1e-6
+
+
+@pytest.mark.parametrize("off", [-1e-5, 0.0, 1e-5])
+def test_a_probe_beside_a_joint_reads_one_of_its_sides(off):
+    """Places nearer than 2e-5 of the length are one, for probes, too."""
+    at = {"rod": "rod", "at": 0.5 + off}
+    scene = {
+        "rods": [{"name": "rod", "nodes": 21, "from": [0, 0], "to": [1, 0]}],
+        "joints": [{"name": "here", "of": [{"rod": "rod", "at": 0.5}]}],
+        "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+        "loads": [{"moment": {**at, "moment": 0.4}}],
+        "analysis": "static",
+        "output": {
+            "probes": {
+                side: {**at, "side": side, "quantity": "moment"} for side in ("before", "after")
+            }
+        },
+    }
+    scene["rods"][0] |= stiffness(1e6, EI)
+    probes = der.run(scene).probes
+    assert probes["before"][-1] == pytest.approx(0.4, abs=1e-9)
+    assert probes["after"][-1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_extreme_beside_a_joint():
+    """The lowest point of an arc without loads, between a joint and the node before it."""
+    angle = np.linspace(-0.5, 0.5, 9) / 1.0
+    points = np.column_stack([np.sin(angle), 1 - np.cos(angle)]).tolist()
+    scene = {
+        "rods": [{"name": "rod", "points": points}],
+        "joints": [{"name": "here", "of": [{"rod": "rod", "at": {"node": 5}}]}],
+        "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+        "analysis": "static",
+        "output": {
+            "probes": {
+                "top": {"rod": "rod", "quantity": "x", "over": "rod", "reduce": "max"},
+                "low": {"rod": "rod", "quantity": "y", "over": "rod", "reduce": "min"},
+            }
+        },
+    }
+    turn = np.array([[np.cos(0.12), -np.sin(0.12)], [np.sin(0.12), np.cos(0.12)]])
+    scene["rods"][0]["points"] = (np.array(points) @ turn).tolist()
+    scene["rods"][0] |= stiffness(1e4, EI)
+    lowest = np.min(
+        (np.array([[np.sin(a), 1 - np.cos(a)] for a in np.linspace(-0.5, 0.5, 100001)]) @ turn)[
+            :, 1
+        ]
+    )
+    low = der.run(scene).probes["low"][-1]
+    assert low == pytest.approx(lowest, abs=2e-5)
+    assert low < np.array(scene["rods"][0]["points"])[:, 1].min() - 1e-6

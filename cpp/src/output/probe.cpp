@@ -120,7 +120,10 @@ class ExtremeReader : public ProbeReader {
     const bool at_end = best == 0 || best == last;
     if (at_end && ring_length_ > 0.0) return sign_ * seam_extreme(best);
     if (at_end) return sign_ * end_extreme(best, best == 0 ? 1 : last - 1);
-    if (!smooth_at(best)) return sign_ * values_[best];
+    // At a joint the two sides are smooth, each by itself.
+    if (!smooth_at(best)) {
+      return sign_ * std::max(end_extreme(best, best - 1), end_extreme(best, best + 1));
+    }
     return sign_ * parabola_extreme(&arc_length_[best - 1], &values_[best - 1]);
   }
 
@@ -138,8 +141,8 @@ class ExtremeReader : public ProbeReader {
     }
   }
 
-  /// The end of the rod has the largest sample: the value there, or a larger one on the way to its
-  /// neighbour, of the parabola through the three outermost samples.
+  /// An end of the rod, or of a smooth part, has the largest sample: the value there, or a larger
+  /// one on the way to its neighbour, of the parabola through the three outermost samples.
   [[nodiscard]] double end_extreme(std::size_t end, std::size_t next) const {
     if (!parabola_at_ends_ || values_.size() < 3 || !smooth_at(next)) return values_[end];
     const double* s = &arc_length_[next - 1];

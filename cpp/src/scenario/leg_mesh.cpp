@@ -94,6 +94,13 @@ std::vector<double> leg_ends(const RestLine& line, const Places& places) {
       if (all || inside[first].role != Role::Joint) inside[first].at->arc_length = ends.back();
     }
   }
+  // What is read there is read on one of its sides.
+  for (const auto& [at, role] : places) {
+    if (role != Role::IsRead || at->kind != Location::Kind::ArcLength) continue;
+    for (const double end : ends) {
+      if (std::abs(at->arc_length - end) <= near) at->arc_length = end;
+    }
+  }
   return ends;
 }
 

@@ -259,8 +259,8 @@ def _spline(
     from scipy.interpolate import make_interp_spline
 
     degree = _degree(len(points) + (first is not None) + (last is not None), other_curve)
-    if degree < 3:
-        return make_interp_spline(chord, points, degree)
+    if degree < 3:  # without the slopes
+        return make_interp_spline(chord, points, min(degree, len(points) - 1))
     flat = [(degree, np.zeros(points.shape[1]))] if degree > 3 else []
     ends = [flat if slope is None else [(1, slope), *flat] for slope in (first, last)]
     merged = max(1, (degree - 3) // 2)

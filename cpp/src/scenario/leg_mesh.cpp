@@ -94,7 +94,7 @@ std::vector<double> leg_ends(const RestLine& line, const Places& places) {
       if (all || inside[first].role != Role::Joint) inside[first].at->arc_length = ends.back();
     }
   }
-  // What is read there is read on one of its sides.
+  // A probe there reads one of the two sides.
   for (const auto& [at, role] : places) {
     if (role != Role::IsRead || at->kind != Location::Kind::ArcLength) continue;
     for (const double end : ends) {
@@ -104,13 +104,18 @@ std::vector<double> leg_ends(const RestLine& line, const Places& places) {
   return ends;
 }
 
+/// Arc length [m] of a node of a line; the node behind the last of a ring is at its end.
+double arc_length_at(const RestLine& line, int node) {
+  return node < line.num_nodes() ? line.arc_length(node) : line.length();
+}
+
 /// Where an arc length [m] is among the nodes of a line.
 OldPlace old_place(const RestLine& line, double s) {
   const int nearest = line.nearest_node(s);
-  const int before =
-      std::clamp(nearest - (s < line.arc_length(nearest) ? 1 : 0), 0, line.num_nodes() - 2);
+  const int last = line.num_nodes() - (line.closed() ? 1 : 2);  // edge
+  const int before = std::clamp(nearest - (s < line.arc_length(nearest) ? 1 : 0), 0, last);
   const double from = line.arc_length(before);
-  return {before, (s - from) / (line.arc_length(before + 1) - from)};
+  return {before, (s - from) / (arc_length_at(line, before + 1) - from)};
 }
 
 /// Places the nodes of a rod on its curve, evenly on each leg: as many cells as the scene's `nodes`
@@ -320,16 +325,9 @@ void count_along_edges(CheckContext& context) {
     const RestLine& along_curve = *context.lines[i];
     const RestLine along_edges(rod.points, rod.closed, rod.rest_length);
     const auto moved = [&](double s) {
-      const auto place = [](const RestLine& line, int node) {
-        return node < line.num_nodes() ? line.arc_length(node) : line.length();
-      };
-      const int nearest = along_curve.nearest_node(s);
-      const int before = std::clamp(nearest - (s < along_curve.arc_length(nearest) ? 1 : 0), 0,
-                                    rod.num_edges() - 1);
-      const double from = place(along_curve, before);
-      const double share = (s - from) / (place(along_curve, before + 1) - from);
-      return place(along_edges, before) +
-             share * (place(along_edges, before + 1) - place(along_edges, before));
+      const auto [before, share] = old_place(along_curve, s);
+      const double from = arc_length_at(along_edges, before);
+      return from + share * (arc_length_at(along_edges, before + 1) - from);
     };
     const auto move = [&](const std::string& name, Location& at) {
       const bool is_place =

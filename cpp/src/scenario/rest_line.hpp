@@ -19,7 +19,7 @@ class RestLine {
   explicit RestLine(const std::vector<Components>& points, bool closed = false,
                     std::optional<double> rest_length = std::nullopt);
 
-  /// Of a curve: `arc_length` [m] of the nodes on it, and its own `length` [m].
+  /// A curve of this `length` [m] with nodes at these arc lengths [m].
   RestLine(std::vector<double> arc_length, double length, bool closed,
            std::optional<double> rest_length);
 

@@ -179,7 +179,7 @@ class KeyReader {
     }
     if (!chosen && !given.empty()) {
       const auto& branches = alternatives.branches;
-      // Of those with the first key the one that has the most.
+      // The one with the most keys among those that have the first.
       const Branch* first = nullptr;
       for (const Branch& branch : branches) {
         const auto beyond = [&](const Branch& each) { return without(given, each).size(); };

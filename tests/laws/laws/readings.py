@@ -102,7 +102,7 @@ def lengths(scene: Scene, model: der.Model) -> dict[str, float]:
 
 
 def _length_of_edges(scene: Scene, parts: int) -> dict[str, float]:
-    """Of the rods that are drawn by segments, each element cut so often, as nothing but drawn."""
+    """Length of the edges of each rod that is drawn by segments, its elements cut into `parts`."""
     drawn = ("name", "nodes", "from", "shape", "closed", "cross_section", "material")
     rods = [
         {key: rod[key] for key in drawn if key in rod} | {"subdivide": parts}

@@ -36,8 +36,8 @@ using NaturalCurvature = std::variant<StressFreeReference, double, std::vector<d
 /// Natural twist [rad/m]: one value, or one for each node, linear in between.
 using NaturalTwist = std::variant<StressFreeReference, double, std::vector<double>>;
 
-/// What is known of the curve of a rod that is drawn by `from`; of one drawn by `points` it has to
-/// be guessed.
+/// The corners and jumps of curvature of a rod that is drawn by `from`. Those of one drawn by
+/// `points` have to be guessed.
 struct DrawnBorders {
   struct Jump {
     int node = 0;

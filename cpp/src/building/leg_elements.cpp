@@ -26,7 +26,7 @@ class LegBuilder {
 
   void add() {
     for_each_end_cell(leg_, [this](auto edges, auto joints, bool from_start) {
-      add_end_cell<edges(), joints()>(from_start);
+      this->template add_end_cell<edges(), joints()>(from_start);
     });
     for (Index place = leg_.first + 1; place < leg_.last; ++place) {
       if (!leg_.in_end_cell(place)) add_bend(place);

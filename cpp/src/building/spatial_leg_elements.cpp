@@ -34,7 +34,7 @@ class SpatialLegBuilder {
 
   void add() {
     for_each_end_cell(leg_, [this](auto edges, auto joints, bool from_start) {
-      add_end_cell<edges(), joints()>(from_start);
+      this->template add_end_cell<edges(), joints()>(from_start);
     });
     // A leg of two cells between a joint and an end without a moment has its only node in one.
     for (Index place = leg_.first + 1; place < leg_.last; ++place) {

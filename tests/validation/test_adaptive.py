@@ -276,19 +276,24 @@ def test_torsional_waves_that_move_no_node_are_damped():
     assert result.probes["torque"][-1] == pytest.approx(3.0 * GJ, rel=1e-6)
 
 
-def test_a_twisted_wire_that_is_pushed_to_a_loop():
+@pytest.mark.parametrize(
+    ("smooth", "tolerance", "most_steps"),
+    [(True, 1e-3, 4000), (False, 1e-2, 4000), (False, 0.1, 2000)],
+)
+def test_a_twisted_wire_that_is_pushed_to_a_loop(smooth, tolerance, most_steps):
     """It writhes, snaps and vibrates. The error is that of all its nodes at all frames, and has
-    grown in the snap; the steps were seven times as many."""
+    grown in the snap. Kinks of the tables start waves, which a loose tolerance need not resolve."""
     scene = turned_wire(21, 25.13, 4.0)
     motion = scene["supports"][1]["prescribe"]
-    motion["twist"]["smooth"] = True
-    motion["x"] = {"times": [1, 3], "values": [0, -0.4], "smooth": True}
+    motion["twist"]["smooth"] = smooth
+    motion["x"] = {"times": [1, 3], "values": [0, -0.4], "smooth": smooth}
     scene["loads"].append({"gravity": [0, 0, -0.05]})
-    exact = der.run({**scene, "time": {"duration": 4.0, "step": 4e-4}}).positions
-    result = der.run(scene)
+    fine = {"duration": 4.0, "step": 2e-4, "integrator": "sdirk5"}
+    exact = der.run({**scene, "time": fine}).positions
+    result = der.run({**scene, "time": {"duration": 4.0, "tolerance": tolerance}})
     assert np.abs(exact[..., 2]).max() > 0.15
-    assert np.linalg.norm(result.positions - exact, axis=2).max() < 1e-3
-    assert result.summary["steps"] < 4000
+    assert np.linalg.norm(result.positions - exact, axis=2).max() < tolerance
+    assert result.summary["steps"] < most_steps
 
 
 def bar_that_swings_about_its_axis(tolerance=None):

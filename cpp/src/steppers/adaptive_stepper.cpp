@@ -23,6 +23,9 @@ constexpr double kInsignificant = 1e-14;
 /// Share of its length by which the ends of an edge may be off against each other, gathered over
 /// the duration. An edge that is shorter than the tolerance could otherwise turn over within it.
 constexpr double kEdgeError = 0.5;
+/// [rad] Greatest error of the angle of a section in one step, so that no step mistakes its turns.
+/// It is not gathered: over the duration an angle counts as the motion of the section's material.
+constexpr double kAngleError = 0.5;
 /// If the remainder would be shorter than this fraction of the step, the step is extended to the
 /// end.
 constexpr double kSliver = 1e-9;
@@ -46,14 +49,18 @@ double shortest_edge(const Model& model) {
 /// Scales the angles in `difference` so that they count as the section's radius of gyration times
 /// the angle, and not as the model's size times it. That is how far the material moves, and, about
 /// a stable shape, in the mean over the mass as far as the angle can ever move nodes: a vibration
-/// cos(W t) d, W^2 = M^-1 K, is never longer than d in the norm of M.
-void count_turns_as_motion(const Model& model, Vector& difference) {
+/// cos(W t) d, W^2 = M^-1 K, is never longer than d in the norm of M. The result is the largest of
+/// the angles [rad].
+double count_turns_as_motion(const Model& model, Vector& difference) {
   const Vector& mass = model.mass.lumped;
   const double size = model.dofs.length();
+  double largest = 0.0;
   for (const SpatialEdge& edge : model.framed_edges) {
+    largest = std::max(largest, std::abs(difference[edge.theta]));
     const double radius = std::sqrt(mass[edge.theta] / (0.5 * (mass[edge.start] + mass[edge.end])));
     difference[edge.theta] *= std::min(radius / size, 1.0);
   }
+  return largest;
 }
 
 /// With steps no longer than see every sine swing.
@@ -145,8 +152,8 @@ StepReport AdaptiveStepper::attempt(State& state, double length) {
 /// Compares the two halves that led to `state` with the whole step.
 void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) {
   difference_ = whole_.positions - state.positions;
+  const double angle = count_turns_as_motion(model_, difference_);
   const double change = largest_edge_change(model_, difference_);
-  count_turns_as_motion(model_, difference_);
   const Index worst = model_.dofs.most_moved(difference_);
   const double difference = model_.dofs.motion_of(worst, difference_[worst]);
   report.last.worst_dof = worst;
@@ -154,7 +161,8 @@ void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) {
   const double of_position = difference / (options_.tolerance * model_.size());
   const double of_edge = change * shortest_edge_ <= rounding ? 0.0 : change / kEdgeError;
   const double share = report.tried / options_.duration;
-  report.error = error_factor_ * std::max(of_position, of_edge) / share;
+  const double gathered = std::max(of_position, of_edge) / share;
+  report.error = error_factor_ * std::max(gathered, angle / kAngleError);
   report.is_of_edge = of_edge > of_position;
   report.at_rounding = difference <= rounding;
 }

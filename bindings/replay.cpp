@@ -35,6 +35,7 @@ struct HeldNode {
   std::vector<std::string> components;  ///< held or moved by a table: x, y, z
   std::optional<double> tangent_angle;  ///< [rad] from the x axis, of a clamp in a plane
   std::vector<double> tangent;          ///< unit vector, of a clamp; else none
+  bool slides = false;                  ///< a clamp, along its tangent
 };
 
 std::vector<std::string> held_components(Index node, const Model& model) {
@@ -80,7 +81,14 @@ std::vector<HeldNode> held_nodes(Replay& replay, std::size_t frame) {
     for (const Index place : nodes_at(support.at, rod)) {
       const Index node = rod.nodes[to_size(place)];
       HeldNode held{rod.name, node, held_components(node, replay.model()), std::nullopt, {}};
-      if (support.clamps()) enter_tangent(held, rod, place, replay);
+      if (support.clamps()) {
+        enter_tangent(held, rod, place, replay);
+        Index along = 0;
+        Eigen::Map<const Vector>(held.tangent.data(), replay.model().dimension)
+            .cwiseAbs()
+            .maxCoeff(&along);
+        held.slides = !support.clamps(static_cast<scenario::Component>(along));
+      }
       result.push_back(held);
     }
   }
@@ -209,6 +217,8 @@ void bind_held_node(py::module_& module) {
             return Array(static_cast<py::ssize_t>(held.tangent.size()), held.tangent.data());
           },
           "Unit vector, shape (dim,), that a clamp holds the tangent along; None without.")
+      .def_readonly("slides", &HeldNode::slides,
+                    "Whether a clamp lets the node move along that tangent.")
       .def("__repr__", [](const HeldNode& held) {
         return py::str("<der.HeldNode {} of {!r}: {}{}>")
             .format(held.node, held.rod, py::str(", ").attr("join")(held.components),

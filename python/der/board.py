@@ -15,7 +15,7 @@ class has changed. Requires the package cosseratbench (the extra ``board``).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -50,8 +50,6 @@ _OF_MOTIONS = "sdirk4"
 _OF_EQUILIBRIA = "tr_bdf2"
 #: The longest step, times the angular frequency of the slowest vibration.
 _STEP = 0.3
-#: The stiffness against turning of a clamp that slides, over EI/L of its rod.
-_STIFF = 1e6
 
 
 class Solver:
@@ -147,41 +145,27 @@ class _Support:
     slides: int | None = None
 
 
-def _supports(rod: Rod, scenario: Scenario) -> dict[End, _Support]:
-    """Return how the ends are held, where an end that slides as it turns is held and turned.
-
-    The opposite end then slides in its place and bears the force along the axis. In statics that is
-    the same but for a translation of the whole.
-    """
-    supports = {
+def _supports(rod: Rod) -> dict[End, _Support]:
+    """Return how the ends are held."""
+    return {
         end: _Support(
             rod.condition(end),
             rod.motion(end),
             sum((np.asarray(load.force) for load in rod.loads if load.at is end), np.zeros(3)),
+            _sliding_axis(rod.motion(end)),
         )
         for end in End
     }
-    sliding = [end for end, one in supports.items() if one.motion and one.motion.slides_along]
-    if not sliding:
-        return supports
-    end = sliding[0]
-    other = End.START if end is End.END else End.END
-    motion = supports[end].motion
-    assert motion is not None
-    axis = int(np.argmax(np.abs(motion.axis)))
-    if abs(motion.axis[axis]) < 1.0:
+
+
+def _sliding_axis(motion: Motion | None) -> int | None:
+    if motion is None or not motion.slides_along:
+        return None
+    along = np.abs(np.asarray(motion.slides_along, float))
+    axis = int(np.argmax(along))
+    if np.count_nonzero(along) > 1:
         raise NotImplementedError("a clamp that slides askew to the axes")
-    if supports[other].condition is not EndCondition.CLAMPED or supports[other].motion is not None:
-        raise NotImplementedError(
-            "a clamp that slides, opposite to an end that is not clamped at rest"
-        )
-    if not scenario.quasi_static or scenario.gravity[axis] != 0.0:
-        raise NotImplementedError("a clamp that slides, with inertia or weight along its axis")
-    along = np.zeros(3)
-    along[axis] = supports[end].force[axis]
-    supports[end] = replace(supports[end], motion=replace(motion, slides_along=None))
-    supports[other] = replace(supports[other], slides=axis, force=-along)
-    return supports
+    return axis
 
 
 def _end_tangents(rod: Rod) -> tuple[_Array, _Array]:
@@ -225,7 +209,7 @@ def _scene_axes(nodes: _Array, supports: dict[End, _Support], gravity: _Array) -
             acting.extend(np.asarray(one.motion.displacement, float))
             rotations.append(_turning(one.motion)[0])
         if one.slides is not None:
-            return [0, 1, 2]
+            acting.append(np.eye(3)[one.slides])
     for axis in range(3):
         plane = [(axis + 1) % 3, (axis + 2) % 3]
         if (
@@ -243,7 +227,7 @@ class _Case:
     def __init__(self, rod: Rod, scenario: Scenario, n_elements: int) -> None:
         self.nodes = rod.nodes(n_elements)
         self.directors = rod.directors(n_elements)
-        self.supports = _supports(rod, scenario)
+        self.supports = _supports(rod)
         gravity = np.asarray(scenario.gravity, float)
         self.axes = _scene_axes(self.nodes, self.supports, gravity)
         self.scene: dict[str, Any] = {
@@ -317,16 +301,10 @@ class _Case:
         names = "xyz"
         for end, one in self.supports.items():
             support: dict[str, Any] = {"rod": "rod", "at": end.value}
-            if one.slides is not None:
-                stiffness = (
-                    _STIFF * rod.material.youngs_modulus * rod.second_moment_of_area / rod.length
-                )
-                support["fix"] = [
-                    names[i] for i, axis in enumerate(self.axes) if axis != one.slides
-                ]
-                support["spring"] = {"rotational_stiffness": stiffness}
-            elif one.condition is EndCondition.CLAMPED:
+            if one.condition is EndCondition.CLAMPED:
                 support["clamp"] = True
+                if one.slides is not None:
+                    support["free"] = [names[self.axes.index(one.slides)]]
             elif one.condition is EndCondition.PINNED:
                 support["fix"] = list(names[: len(self.axes)])
             else:
@@ -364,11 +342,6 @@ class _Case:
         """Return nodes and directors of a result as the board has them."""
         nodes = np.tile(self.nodes, (len(result.times), 1, 1))
         nodes[:, :, self.axes] = result.positions
-        for end, one in self.supports.items():
-            if one.slides is not None:
-                held = 0 if end is End.START else -1
-                drift = nodes[:, held, one.slides] - self.nodes[held, one.slides]
-                nodes[:, :, one.slides] -= drift[:, None]
         if len(self.axes) == 2:
             return nodes, self._turned_in_the_plane(result.positions)
         assert result.directors is not None

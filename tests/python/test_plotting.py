@@ -178,6 +178,18 @@ def test_supports_have_their_symbols(tube, swing):
     assert np.ptp(vertices[:, 1]) > np.ptp(vertices[:, 0])
 
 
+@pytest.mark.parametrize(("free", "slides"), [(["x"], True), (["y"], False)])
+def test_clamps_that_slide_have_symbols_of_their_own(swing, free, slides):
+    clamp = {**swing["supports"][0], "free": free}
+    swing["supports"] = [clamp, {"rod": "arm", "at": "end", "fix": free}]
+    result = der.run(swing)
+    assert result.held_nodes(0)[0].slides is slides
+    lines = {line.get_gid(): line for line in result.plot("shapes").axes[0].lines}
+    symbol = lines["support-arm-0"].get_marker().vertices
+    assert symbol[:, 0].max() == pytest.approx(0.5 if slides else 0.0, abs=1e-12)
+    assert symbol[:, 0].min() == pytest.approx(-0.5 if slides else -0.6, abs=1e-12)
+
+
 def test_springs_have_their_symbols(swing):
     swing["supports"] = [
         {"rod": "arm", "at": "start", "fix": ["x", "y"], "spring": {"rotational_stiffness": 1.0}},

@@ -184,7 +184,7 @@ std::vector<HeldDof> Reactions::Reader::held_by(const scenario::Support& support
     const auto motion =
         std::find_if(support.prescribe.begin(), support.prescribe.end(),
                      [&](const auto& prescribed) { return prescribed.component == component; });
-    if (!support.clamps() && !fixed && motion == support.prescribe.end()) continue;
+    if (!support.clamps(component) && !fixed && motion == support.prescribe.end()) continue;
     const auto known = std::find_if(model.held.begin(), model.held.end(),
                                     [&](const HeldDof& other) { return other.dof == dof; });
     if (known != model.held.end()) held.push_back(*known);
@@ -256,11 +256,16 @@ std::size_t Reactions::Reader::clamp_number(std::size_t rod, const Clamp& clamp,
   return first_clamps_[rod] + static_cast<std::size_t>(&clamp - model.rods[rod].clamps.data());
 }
 
-/// Those that act on the held nodes: the others add nothing.
+/// Those that act on the held nodes, and on those of clamps that are free to move: the others add
+/// nothing.
 void Reactions::Reader::choose_elements(const Model& model) {
   std::vector<bool> read(to_size(model.num_dofs()), false);
   for (const Place& place : places_) {
     for (const HeldDof& held : place.held) read[to_size(held.dof)] = true;
+    for (int c = 0; place.clamp >= 0 && c < model.dimension; ++c) {
+      const Index node = model.rods[place.rod].node(place.nodes.front().place);
+      read[to_size(model.dof(node, c))] = true;
+    }
     for (Index c = 0; place.rotation >= 0 && c < (model.dimension == 3 ? 3 : 1); ++c) {
       read[to_size(place.rotation + c)] = true;
     }

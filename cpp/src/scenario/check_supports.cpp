@@ -10,8 +10,14 @@ namespace der::scenario {
 namespace {
 
 std::vector<Hold> held_by(const Support& support) {
-  if (support.clamps()) return {kHolds.begin(), kHolds.end()};
   std::vector<Hold> held;
+  if (support.clamps()) {
+    for (const Component component : {Component::X, Component::Y, Component::Z}) {
+      if (support.clamps(component)) held.push_back(hold_of(component));
+    }
+    held.push_back(Hold::Angle);
+    return held;
+  }
   for (const Component component : support.fix) held.push_back(hold_of(component));
   for (const Prescribed& motion : support.prescribe) held.push_back(hold_of(motion.component));
   std::sort(held.begin(), held.end());

@@ -92,6 +92,9 @@ std::string out_of_plane(const Support& support, std::size_t number, const Scene
       return fmt::format("supports.{} moves along z", number);
     }
   }
+  if (support.clamps() && !support.clamps(Component::Z)) {
+    return fmt::format("supports.{} lets its node move along z", number);
+  }
   if (support.axis_rotation) {
     const Components& axis = support.axis_rotation->axis;
     if (axis[0] != 0.0 || axis[1] != 0.0) {

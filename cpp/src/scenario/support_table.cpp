@@ -114,6 +114,20 @@ Format<Spring> spring_format() {
           }));
 }
 
+/// Says which component is named twice, or prescribed as well; "" if none is.
+std::string contradiction(const std::vector<Component>& components, const char* as,
+                          const PrescribeText& motion) {
+  for (auto it = components.begin(); it != components.end(); ++it) {
+    if (std::find(components.begin(), it, *it) != it) {
+      return fmt::format("'{}' is {} twice", name_of(*it), as);
+    }
+    if (motion.displacement(*it)) {
+      return fmt::format("'{}' is both {} and prescribed: give one or the other", name_of(*it), as);
+    }
+  }
+  return {};
+}
+
 /// Describes a contradiction between the keys of one support; "" if there is none.
 std::string contradiction(const SupportText& support) {
   const PrescribeText& motion = support.motion;
@@ -121,12 +135,15 @@ std::string contradiction(const SupportText& support) {
   if (support.clamps() && !support.fix.empty()) {
     return fmt::format("'clamp: {}' holds every component already: remove 'fix'", held);
   }
-  if (support.clamps() && support.spring) {
+  if (support.clamps() && support.free.empty() && support.spring) {
     return fmt::format("'clamp: {}' holds all that a spring could: remove one of them", held);
   }
   if (support.clamp == Clamp::Tangent && motion.twist) {
     return "'twist' turns a section that is held, and 'clamp: tangent' leaves it free: write "
            "'clamp: true', or remove it";
+  }
+  if (!support.free.empty() && !support.clamps()) {
+    return "'free' is of a clamp: add 'clamp: true', or remove it";
   }
   if (!support.clamps()) {
     if (motion.angle) return "'angle' turns a clamp: add 'clamp: true', or remove it";
@@ -136,18 +153,8 @@ std::string contradiction(const SupportText& support) {
   if (!support.holds() && !motion.moves() && !support.spring) {
     return "this support holds nothing: give 'fix', 'clamp: true', 'prescribe' or 'spring'";
   }
-  for (std::size_t i = 0; i < support.fix.size(); ++i) {
-    const Component component = support.fix[i];
-    const char* name = name_of(component);
-    if (std::find(support.fix.begin(), support.fix.begin() + static_cast<std::ptrdiff_t>(i),
-                  component) != support.fix.begin() + static_cast<std::ptrdiff_t>(i)) {
-      return fmt::format("'{}' is fixed twice", name);
-    }
-    if (motion.displacement(component)) {
-      return fmt::format("'{}' is both fixed and prescribed: give one or the other", name);
-    }
-  }
-  return {};
+  const std::string fixed = contradiction(support.fix, "fixed", motion);
+  return fixed.empty() ? contradiction(support.free, "free", motion) : fixed;
 }
 
 void check_support(SupportText& support, const Place& place, Diagnostics& diagnostics) {
@@ -184,6 +191,10 @@ Format<Support> support_format() {
                     "Whether the node, the direction of the rod at it and its section are held: "
                     "all that a wall holds.",
                     "false")
+          .optional("free", &Support::free, list_of(component_format(), 1),
+                    "Only with a clamp: components along which its node may move. The direction "
+                    "and the section stay held.",
+                    "none")
           .optional("prescribe", &SupportText::motion, prescribe_format(),
                     "Components that move over time.")
           .optional("spring", &Support::spring, spring_format(),

@@ -78,7 +78,10 @@ void hold_nodes(const scenario::Support& support, std::size_t number, Model& mod
       hold(model, model.dof(node, static_cast<int>(component)), -1);
     }
     if (support.clamps()) {
-      for (int c = 0; c < model.dimension; ++c) hold(model, model.dof(node, c), -1);
+      for (int c = 0; c < model.dimension; ++c) {
+        if (support.clamps(static_cast<scenario::Component>(c)))
+          hold(model, model.dof(node, c), -1);
+      }
       if (!rod.legs.empty() && model.dimension == 3) {
         hold_joint(support, number, place, rod, model);
         continue;

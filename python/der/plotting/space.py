@@ -251,7 +251,7 @@ class SpatialPicture(Picture):
             first /= np.linalg.norm(first)
             wall = np.vstack([size * first, size * np.cross(along, first), 0.18 * size * along])
             ends = {int(rod.nodes[0]): -1.0, int(rod.nodes[-1]): 1.0}
-            side = 0.0 if rod.closed else ends.get(held.node, 0.0)
+            side = 0.0 if rod.closed or held.slides else ends.get(held.node, 0.0)
             yield box(place + side * wall[2], wall, _GREY)
             return
         axes = [np.eye(3)["xyz".index(name)] for name in held.components]

@@ -38,6 +38,9 @@ _TRIANGLE = [(0.0, 0.0), (-0.6, -1.0), (0.6, -1.0), (0.0, 0.0)]
 _PINNED = _strokes(_TRIANGLE, *_hatching(-1.0))
 _ROLLER = _strokes(_TRIANGLE, *_hatching(-1.3))
 _WALL = _strokes(*_hatching(0.0)).transformed(Affine2D().rotate_deg(-90))
+_GUIDE = _strokes([(-0.9, 0.0), (0.9, 0.0)], *_hatching(-0.3)).transformed(
+    Affine2D().rotate_deg(-90)
+)
 _SLEEVE = _strokes([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)])
 
 _ZIGZAG = [(0.3 * (-1) ** k, -0.45 - 0.2 * k) for k in range(5)]
@@ -62,7 +65,8 @@ def draw_supports(
     """Draw the usual symbol at each held node.
 
     A triangle on the ground for a node held in x and y, on a gap where it can roll, a hatched wall
-    for a clamped end, a square for a clamp between the ends.
+    for a clamped end, on a gap where it can move across, a square for a clamp that slides along the
+    rod, or between the ends.
 
     Parameters
     ----------
@@ -184,9 +188,10 @@ def _draw_symbol(
 def _symbol(held: HeldNode, end: int | None) -> tuple[Path, float]:
     """Return a symbol and its turn [rad]; `end` is 0 at a rod's start, -1 at its end."""
     if held.tangent_angle is not None:
-        if end is None:
+        if end is None or held.slides:
             return _SLEEVE, held.tangent_angle
-        return _WALL, held.tangent_angle + (0.0 if end == 0 else np.pi)
+        symbol = _WALL if {"x", "y"} <= set(held.components) else _GUIDE
+        return symbol, held.tangent_angle + (0.0 if end == 0 else np.pi)
     if {"x", "y"} <= set(held.components):
         return _PINNED, 0.0
     return _ROLLER, 0.0 if "y" in held.components else -0.5 * np.pi

@@ -328,6 +328,7 @@ def _supports(result: RunData, source: NDArray[np.int64]) -> list[dict[str, Any]
                 "place": int(np.flatnonzero(rod.nodes == held.node)[0]),
                 "down": down.tolist(),
                 "tangents": tangents,
+                "slides": held.slides,
             }
         )
     return found

@@ -190,7 +190,7 @@
     const u = scale(size, across(along));
     const v = scale(size, unit(cross(along, u), [0, 0, 1]));
     const last = line.length - 1;
-    if (support.place === 0 || support.place === last) {
+    if (!support.slides && (support.place === 0 || support.place === last)) {
       const thick = scale((support.place === 0 ? -0.12 : 0.12) * size, along);
       addBox(mesh, add(node, thick), u, v, thick); // a wall behind the end
     } else {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,6 +52,7 @@ struct Support {
   std::vector<Component> fix;         ///< held at their initial value
   std::vector<Prescribed> prescribe;  ///< moved by a table
   Clamp clamp = Clamp::None;
+  std::vector<Component> free;  ///< of a clamp: its node moves along them
   /// Planar model: rotation of the clamped tangent about z, from its initial direction [rad].
   std::optional<Series> rotation;
   /// Spatial models: rotation of the clamped tangent, and of a clamped section with it.
@@ -64,6 +66,10 @@ struct Support {
   /// Whether it holds nodes; otherwise it is only a spring, at any arc length.
   [[nodiscard]] bool holds() const { return clamps() || !fix.empty() || !prescribe.empty(); }
   [[nodiscard]] bool clamps() const { return clamp != Clamp::None; }
+  /// Whether it is a clamp that holds this component of its node.
+  [[nodiscard]] bool clamps(Component component) const {
+    return clamps() && std::find(free.begin(), free.end(), component) == free.end();
+  }
 };
 
 /// Calls `use(key, table)` with every motion of a support, its key that under `prescribe`.

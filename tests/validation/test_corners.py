@@ -662,3 +662,36 @@ def test_natural_curvatures_that_jump_where_the_drawn_ones_do(dimension, holds, 
         bears.append(abs(result.probes["moment"][-1]))
     # An error of order 1 would leave a quarter of an edge times the curvature 1/radius.
     assert np.all(np.array(bears) < 0.1 * angle**2 / np.array(sizes) ** 2 / radius)
+
+
+@pytest.mark.parametrize("at", [0.333333, 0.333334])
+@pytest.mark.parametrize(
+    "joints", [[], [{"name": "elbow", "of": [{"rod": "rod", "at": "middle"}]}]]
+)
+def test_a_probe_with_a_side_finds_the_corner_by_a_rounded_number(at, joints):
+    """A corner at a third of the rod, with an own tension and slope on either side."""
+    n = 12
+    points = [[k / (3 * n), 0.0] for k in range(n + 1)]
+    points += [[1 / 3, k / (3 * n)] for k in range(1, 2 * n + 1)]
+    places = {"rounded": at, "exact": {"node": n}}
+    probes = {
+        f"{quantity}-{side}-{name}": {"rod": "rod", "at": place, "side": side, "quantity": quantity}
+        for quantity in ("slope", "tension", "moment")
+        for side in ("before", "after")
+        for name, place in places.items()
+    }
+    load = {"point_force": {"rod": "rod", "at": "end", "force": [0.02, -0.05]}}
+    frame = {
+        "rods": [{"name": "rod", "points": points, "cross_section": section(EA=1e3, EI=0.1)}],
+        "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+        "loads": [load],
+        "joints": joints,
+        "analysis": "static",
+        "output": {"probes": probes},
+    }
+    found = der.run(frame).probes
+    for quantity in ("slope", "tension", "moment"):
+        sides = [found[f"{quantity}-{side}-exact"][-1] for side in ("before", "after")]
+        rounded = [found[f"{quantity}-{side}-rounded"][-1] for side in ("before", "after")]
+        assert rounded == sides
+    assert found["slope-after-exact"][-1] - found["slope-before-exact"][-1] > 1.5

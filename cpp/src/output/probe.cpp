@@ -268,12 +268,26 @@ double place_of(const scenario::Probe& probe, const RodMesh& rod) {
   return before_start ? rod.rest_length() : s;
 }
 
+/// The place nearest to `s` at which a field jumps, which a probe with a side may give as a rounded
+/// number; `s` where there is none so near.
+double jump_near(const std::vector<double>& arc, double s, const RodMesh& rod) {
+  double least = 2e-5 * rod.rest_length();
+  double found = s;
+  for (std::size_t i = 1; i < arc.size(); ++i) {
+    if (arc[i] - arc[i - 1] > rod.same_place() || std::abs(arc[i] - s) >= least) continue;
+    least = std::abs(arc[i] - s);
+    found = arc[i];
+  }
+  return found;
+}
+
 SampleWeights point_weights(const scenario::Probe& probe, QuantityKind kind, const RodField& field,
                             const RodMesh& rod, double s, const Model& model) {
   if (kind == QuantityKind::Position || kind == QuantityKind::Velocity) {
     return sample_weights(node_weights(rod, s, model), rod);
   }
   if (can_jump(kind)) {
+    if (probe.side) s = jump_near(field.arc_length(), s, rod);
     SampleWeights weights = one_sided_weights(
         field.arc_length(), s, probe.side.value_or(scenario::Side::After), rod.same_place());
     return rod.legs.empty() ? weights

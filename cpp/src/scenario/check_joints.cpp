@@ -272,9 +272,6 @@ class JointedSceneCheck {
   void check_rod(int number) {
     const Rod& rod = context_.scene.rods[static_cast<std::size_t>(number)];
     const Path path{"rods", number};
-    const bool by_shape =
-        !context_.scene.given_rods[static_cast<std::size_t>(number)].shape.empty();
-    if (rod.closed && by_shape) lacks(path / "closed", "a closed rod with a 'shape'");
     if (context_.diagnostics.dimension() != 3) return;
     if (rod.closed) lacks(path / "closed", "a closed rod in space");
     if (damping_of(rod).any()) lacks(path, "internal damping in space");

@@ -68,9 +68,10 @@ std::vector<double> leg_ends(const RestLine& line, const Places& places) {
     name_by_arc_length(line, at);
     if (place.role == Role::IsRead || at.kind != Location::Kind::ArcLength) continue;
     if (at.arc_length > line.length()) continue;
-    if (at.arc_length <= near) {
+    const bool at_end = at.arc_length >= line.length() - near;
+    if (at.arc_length <= near || (at_end && line.closed())) {
       at.kind = Location::Kind::Start;
-    } else if (at.arc_length >= line.length() - near) {
+    } else if (at_end) {
       at.kind = Location::Kind::End;
     } else {
       inside.push_back(place);
@@ -118,6 +119,10 @@ OldPlace old_place(const RestLine& line, double s) {
   return {before, (s - from) / (arc_length_at(line, before + 1) - from)};
 }
 
+int num_cells(const RodText& text, const RestLine& line) {
+  return line.closed() ? *text.nodes : *text.nodes - 1;
+}
+
 /// Places the nodes of a rod on its curve, evenly on each leg: as many cells as the scene's `nodes`
 /// say, each cut into as many as `subdivide` says. `jumps`: of its list of natural curvatures.
 RestLine place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends,
@@ -128,7 +133,7 @@ RestLine place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends,
   bounds.push_back(text.curve->length());
   std::vector<double> lengths;
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) lengths.push_back(bounds[i + 1] - bounds[i]);
-  std::vector<int> cells = share_out(*text.nodes - 1, lengths);
+  std::vector<int> cells = share_out(num_cells(text, line), lengths);
   for (int& count : cells) count *= text.subdivide.value_or(1);
   CurveMesh mesh = mesh_of(*text.curve, bounds, cells);
   rod.points = std::move(mesh.points);
@@ -144,7 +149,7 @@ void place_leg_ends(CheckContext& context, std::size_t number, Places places) {
   std::optional<RestLine>& line = context.lines[number];
   RodText& text = context.scene.given_rods[number];
   Rod& rod = context.scene.rods[number];
-  if (!text.nodes || rod.closed) return;  // those of a rod drawn by points stay
+  if (!text.nodes) return;  // those of a rod drawn by points stay
   std::deque<Location> others;
   for (const CurveBorder& border : text.curve->borders()) {
     Location& at = others.emplace_back();
@@ -154,7 +159,7 @@ void place_leg_ends(CheckContext& context, std::size_t number, Places places) {
   }
   const bool has_borders = !others.empty();
   // The two sides of a jump are smooth, each by itself.
-  const std::vector<int> jumps = natural_jumps(rod, line->length() / (*text.nodes - 1));
+  const std::vector<int> jumps = natural_jumps(rod, line->length() / num_cells(text, *line));
   for (const int node : jumps) {
     Location& at = others.emplace_back();
     at.kind = Location::Kind::Node;
@@ -162,7 +167,7 @@ void place_leg_ends(CheckContext& context, std::size_t number, Places places) {
     places.push_back({&at, Role::Acts});
   }
   const std::vector<double> ends = leg_ends(*line, places);
-  const int least = static_cast<int>(ends.size()) + 2;
+  const int least = static_cast<int>(ends.size()) + (rod.closed ? 1 : 2);
   if (*text.nodes < least) {
     context.diagnostics.add(
         path / "nodes",

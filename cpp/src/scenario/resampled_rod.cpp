@@ -25,7 +25,7 @@ void resample(const std::vector<OldPlace>& nodes, std::vector<Item>& list) {
   result.reserve(nodes.size());
   for (const auto& [before, share] : nodes) {
     const auto first = static_cast<std::size_t>(before);
-    result.push_back(between(list[first], list[first + 1], share));
+    result.push_back(between(list[first], list[(first + 1) % list.size()], share));
   }
   list = std::move(result);
 }
@@ -52,7 +52,8 @@ class ListWithJumps {
   }
 
  private:
-  [[nodiscard]] double at(int i) const { return list_[static_cast<std::size_t>(i)]; }
+  /// Behind the last of a ring its first one follows.
+  [[nodiscard]] double at(int i) const { return list_[static_cast<std::size_t>(i) % list_.size()]; }
   [[nodiscard]] double continued(int i, int side) const {
     return 2.0 * at(i + side) - at(i + 2 * side);
   }

@@ -373,3 +373,48 @@ def test_errors_follow_the_tolerance_where_torsion_moves_nodes(make, fitted_orde
             errors.append(np.linalg.norm(found - exact, axis=2).max() / size)
         assert fitted_order(tolerances, errors) == pytest.approx(1.0, abs=0.3), errors
         assert all(e <= t for e, t in zip(errors, tolerances, strict=True)), errors
+
+
+def arm_that_curls(radius, moment):
+    """An arm in a bearing: a motor turns it to and fro while it is straight, and then it curls."""
+    silicone = {"youngs_modulus": 1e6, "poissons_ratio": 0.45, "density": 1100}
+    pushes = [0.0, moment, 0.0, 0.0, -moment, 0.0]
+    times = [0, 0.15, 0.3, 1, 1.15, 1.3]
+    motor = {"times": times, "values": [[m, 0, 0] for m in pushes], "smooth": True}
+    curl = {"times": [0, 1.5, 2.5], "values": [0, 0, 6.0], "smooth": True}
+    return {
+        "rods": [
+            {
+                "name": "rod",
+                "nodes": 11,
+                "from": [0, 0, 0],
+                "to": [0.3, 0, 0],
+                "cross_section": {"circle": {"radius": radius}},
+                "material": {**silicone, "damping": 0.002},
+                "natural_curvature": [0, 0],
+                "natural_twist": 0,
+            }
+        ],
+        "supports": [{"rod": "rod", "at": "start", "clamp": "tangent"}],
+        "loads": [
+            {"moment": {"rod": "rod", "at": "start", "moment": motor}},
+            {"damping": {"coefficient": 0.3}},
+        ],
+        "actuation": [{"name": "curl", "rod": "rod", "natural_curvature": [curl, 0]}],
+        "output": {"every": 0.1},
+    }
+
+
+@pytest.mark.parametrize("integrator", ["tr_bdf2", "implicit_midpoint", "bdf2", "sdirk5"])
+@pytest.mark.parametrize("tolerance", [0.1, 1e-2, 1e-3])
+def test_the_angle_of_a_rod_that_nothing_holds_counts_as_a_motion(integrator, tolerance):
+    """It moves no node while the rod is straight, and is where the rod bends to later."""
+    scene = arm_that_curls(0.004, 2e-5)
+
+    def positions(**time):
+        return der.run({**scene, "time": {"duration": 3.0, **time}}).positions
+
+    exact = positions(step=1e-3, integrator="sdirk5")
+    found = positions(tolerance=tolerance, integrator=integrator)
+    assert np.abs(exact[-1][-1][1:]).max() > 0.1
+    assert np.linalg.norm(found - exact, axis=2).max() < 0.3 * tolerance

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "der/core/index.hpp"
 #include "der/model/edge_change.hpp"
 
 namespace der {
@@ -46,19 +47,49 @@ double shortest_edge(const Model& model) {
   return shortest;
 }
 
+/// Whether nothing holds the sections of a rod against spinning as a whole.
+bool spins(const RodMesh& rod) {
+  return std::none_of(rod.clamps.begin(), rod.clamps.end(),
+                      [](const Clamp& clamp) { return clamp.holds_section; }) &&
+         std::none_of(rod.section_springs.begin(), rod.section_springs.end(),
+                      [](const SectionSpringPlace& place) { return place.stiffness.z() > 0.0; }) &&
+         std::none_of(rod.legs.begin(), rod.legs.end(), [](const Leg& leg) {
+           return leg.start.rotation >= 0 || leg.end.rotation >= 0;
+         });
+}
+
 /// Scales the angles in `difference` so that they count as the section's radius of gyration times
 /// the angle, and not as the model's size times it. That is how far the material moves, and, about
 /// a stable shape, in the mean over the mass as far as the angle can ever move nodes: a vibration
-/// cos(W t) d, W^2 = M^-1 K, is never longer than d in the norm of M. The result is the largest of
-/// the angles [rad].
+/// cos(W t) d, W^2 = M^-1 K, is never longer than d in the norm of M. Where nothing brings a rod
+/// back that has turned as a whole, its mean angle stays as it is: a bend makes it a motion of the
+/// nodes. The result is the largest of the angles [rad].
 double count_turns_as_motion(const Model& model, Vector& difference) {
+  if (model.framed_edges.empty()) return 0.0;
   const Vector& mass = model.mass.lumped;
   const double size = model.dofs.length();
   double largest = 0.0;
-  for (const SpatialEdge& edge : model.framed_edges) {
-    largest = std::max(largest, std::abs(difference[edge.theta]));
-    const double radius = std::sqrt(mass[edge.theta] / (0.5 * (mass[edge.start] + mass[edge.end])));
-    difference[edge.theta] *= std::min(radius / size, 1.0);
+  for (const RodMesh& rod : model.rods) {
+    const auto edges = [&](const auto& use) {
+      for (Index k = 0; k < rod.num_edges(); ++k)
+        use(model.framed_edges[to_size(rod.first_edge + k)]);
+    };
+    double whole = 0.0;
+    double inertia = 0.0;
+    if (spins(rod)) {
+      edges([&](const SpatialEdge& edge) {
+        whole += mass[edge.theta] * difference[edge.theta];
+        inertia += mass[edge.theta];
+      });
+    }
+    const double mean = inertia > 0.0 ? whole / inertia : 0.0;
+    edges([&](const SpatialEdge& edge) {
+      double& angle = difference[edge.theta];
+      largest = std::max(largest, std::abs(angle));
+      const double radius =
+          std::sqrt(mass[edge.theta] / (0.5 * (mass[edge.start] + mass[edge.end])));
+      angle = mean + (angle - mean) * std::min(radius / size, 1.0);
+    });
   }
   return largest;
 }

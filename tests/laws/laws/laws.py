@@ -107,10 +107,8 @@ def moved(rotation: NDArray[np.float64], shift: NDArray[np.float64]) -> Law:
 
         scene = mapped(scene, change)
         for support in scene.get("supports", ()):
-            if "fix" in support and on_axes:
-                support["fix"] = [
-                    AXES[_target(turn, AXES.index(axis))[0]] for axis in support["fix"]
-                ]
+            for key in {"fix", "free"} & support.keys() if on_axes else ():
+                support[key] = [AXES[_target(turn, AXES.index(axis))[0]] for axis in support[key]]
             if "prescribe" in support:
                 support["prescribe"] = _moved_along(support["prescribe"], turn)
         return drop_probes(scene, lambda probe: _stays(probe, translated))
@@ -171,8 +169,9 @@ def _refuse_axes(scene: Scene) -> None:
     """Refuse what goes with some axes of the scene only."""
     size = 2 if is_planar(scene) else 3
     for support in scene.get("supports", ()):
-        if support.get("fix") and len(support["fix"]) < size:
-            raise NotApplicableError("a support holds components along axes of the scene")
+        for components in (support.get("fix"), support.get("free")):
+            if components and len(components) < size:
+                raise NotApplicableError("a support holds components along axes of the scene")
         if set(AXES) & support.get("prescribe", {}).keys() and "clamp" not in support:
             raise NotApplicableError("a support moves components along axes of the scene")
 

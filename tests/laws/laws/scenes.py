@@ -440,6 +440,11 @@ THINGS: dict[str, tuple[tuple[str, ...], Thing]] = {
         ),
     ),
     "clamps at both ends": (TWISTS, lambda m: _held({"at": "end", "clamp": True})),
+    "clamp that slides": (
+        TWISTS,
+        lambda m: _held({"at": "end", "clamp": True, "free": ["x"]}),
+    ),
+    "guide": (TWISTS, lambda m: _held({"at": "end", "clamp": True, "free": ["x", "y"]})),
     "tangents held": (
         ALL,
         lambda m: _held(

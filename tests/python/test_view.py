@@ -35,6 +35,7 @@ def test_page_holds_the_run_and_nothing_from_elsewhere(swing, tmp_path):
     swing["title"] = "Swing </script><b>&amp; <!--<script>"
     result = der.run(swing)
     page = result.view(tmp_path / "view.html")
+    assert page.stat().st_size < 2.3e6, "Plotly is packed"
     data = payload_of(page)
     assert data["title"] == swing["title"]
     count = len(result.times)

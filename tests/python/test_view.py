@@ -483,6 +483,7 @@ def test_browser_keeps_scale_and_axes(browser, spheres, tmp_path):
         assert now == pytest.approx(then)
     ball = browser.execute_script("return document.getElementById('scene').data[2].x")
     assert np.ptp(ball) == pytest.approx(0.11, abs=0.002)
+    assert len(ball) > 3 * 800, "no corners are seen"
     assert_no_errors(browser)
 
 

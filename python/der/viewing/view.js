@@ -328,7 +328,7 @@
     const count = rods.reduce((sum, rod) => sum + rod.spheres.length, 0);
     for (const rod of rods) {
       const line = lineOf(rod, frame);
-      for (const [i, radius] of rod.spheres) addSphere(mesh, line[i], radius, count > 20 ? 6 : 14);
+      for (const [i, radius] of rod.spheres) addSphere(mesh, line[i], radius, count > 20 ? 8 : 20);
     }
     const look = { color: SPHERE, opacity: 0.35, lighting: LIGHT, hoverinfo: "skip" };
     return { type: "mesh3d", ...plain(mesh), ...look };

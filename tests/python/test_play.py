@@ -275,6 +275,12 @@ def test_page(browser, still, monkeypatch, capfd):
     slider.send_keys(Keys.ARROW_RIGHT * 5)
     button("Play")
     until(lambda: simulation.value("push.y") == pytest.approx(0.05))
+    box = browser.find_elements("css selector", "input[inputmode=decimal]")[1]
+    reach = control(player, "push.y").reach
+    for text, value in (("-1.25", -1.25), ("98", reach), ("0.5", 0.5)):
+        box.send_keys(Keys.CONTROL + "a")
+        box.send_keys(text)
+        until(lambda value=value: simulation.value("push.y") == pytest.approx(value))
     assert_no_errors(browser, but="inside passive event listener")  # of viser's own page
     browser.get("about:blank")
     thread.join(120)

@@ -13,7 +13,6 @@ from __future__ import annotations
 import argparse
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -673,34 +672,21 @@ def view(path: Path) -> None:
 def play(path: Path) -> None:
     """Write a screenshot of a scene that is played, while the mouse pulls."""
     import viser  # noqa: F401 - without it the picture is left as it is
-    from screenshots import chromium
+    from screenshots import chromium, played, wait_until_played
     from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.support.ui import WebDriverWait
 
-    command = [sys.executable, "-m", "der", "play", "example:finger", "--port", "8961"]
-    with (
-        chromium() as browser,
-        subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as player,
-    ):
-        try:
-            assert player.stdout is not None
-            browser.set_window_size(1280, 760)
-            browser.get(player.stdout.readline().split()[0])
-            wait = WebDriverWait(browser, 180)
-            wait.until(lambda b: "moment_clamp" in b.find_element("css selector", "body").text)
-            time.sleep(5.0)  # it has closed and opened by then
-            canvas = browser.find_element("css selector", "canvas")
-            height = canvas.rect["height"]
-            hand = ActionChains(browser)
-            hand.move_to_element_with_offset(canvas, round(0.25 * height), round(0.07 * height))
-            hand.click_and_hold().move_by_offset(0, -20).move_by_offset(0, -round(0.35 * height))
-            hand.perform()
-            time.sleep(3.0)
-            notice = "[...document.querySelectorAll('.mantine-Notification-root')]"
-            browser.execute_script(f"{notice}.forEach((one) => one.remove())")  # of a slow browser
-            browser.save_screenshot(str(path))
-        finally:
-            player.terminate()
+    with chromium() as browser, played() as address:
+        browser.set_window_size(1280, 760)
+        browser.get(address)
+        wait_until_played(browser)
+        canvas = browser.find_element("css selector", "canvas")
+        height = canvas.rect["height"]
+        hand = ActionChains(browser)
+        hand.move_to_element_with_offset(canvas, round(0.25 * height), round(0.07 * height))
+        hand.click_and_hold().move_by_offset(0, -20).move_by_offset(0, -round(0.35 * height))
+        hand.perform()
+        time.sleep(3.0)
+        browser.save_screenshot(str(path))
 
 
 def notebook(path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Screenshots of the site and of an interactive view, as a desktop and as a phone show them.
+"""Screenshots of the site, a view and a scene that is played, as a desktop and a phone show them.
 
     python docs/screenshots.py [FOLDER]
 
@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import base64
 import shutil
+import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -60,12 +62,35 @@ def chromium() -> Iterator[Any]:
             browser.quit()
 
 
-def show(browser: Any, page: Path, screen: str) -> None:
+@contextmanager
+def played() -> Iterator[str]:
+    """Give the address of the finger, played until its page is closed."""
+    command = [sys.executable, "-m", "der", "play", "example:finger", "--port", "8961"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as player:
+        try:
+            assert player.stdout is not None
+            yield player.stdout.readline().split()[0]
+        finally:
+            player.terminate()
+
+
+def wait_until_played(browser: Any) -> None:
+    """Wait until a page plays, and has closed and opened the finger."""
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    body = ("css selector", "body")
+    WebDriverWait(browser, 180).until(lambda b: "moment_clamp" in b.find_element(*body).text)
+    time.sleep(5.0)
+    notice = "[...document.querySelectorAll('.mantine-Notification-root')]"
+    browser.execute_script(f"{notice}.forEach((one) => one.remove())")  # of a slow browser
+
+
+def show(browser: Any, address: str, screen: str) -> None:
     """Open a page on a screen."""
     width, height = SCREENS[screen]
     metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
-    browser.get(page.as_uri())
+    browser.get(address)
 
 
 def write(browser: Any, path: Path, *, whole: bool) -> None:
@@ -89,12 +114,17 @@ def main(folder: Path) -> None:
         view = der.run("example:finger").view(Path(made) / "view.html", open=False)
         for screen in SCREENS:
             for name in PAGES:
-                show(browser, ROOT / "build" / "site" / f"{name}.html", screen)
+                page = ROOT / "build" / "site" / f"{name}.html"
+                show(browser, page.as_uri(), screen)
                 write(browser, folder / f"{name}_{screen}.png", whole=True)
-            show(browser, view, screen)
+            show(browser, view.as_uri(), screen)
             wait = WebDriverWait(browser, 60)
             wait.until(lambda b: b.find_elements("css selector", "body.ready"))
             write(browser, folder / f"view_{screen}.png", whole=False)
+            with played() as address:
+                show(browser, address, screen)
+                wait_until_played(browser)
+                write(browser, folder / f"play_{screen}.png", whole=False)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,9 @@ from der._core import path_events
 
 Array = NDArray[np.float64]
 
+#: How many values of modes stand in a line.
+_SHOWN = 4
+
 
 @dataclass(frozen=True, eq=False)
 class Modes:
@@ -32,6 +35,10 @@ class Modes:
     frequencies: Array
     growth_rates: Array
     shapes: Array
+
+    def __repr__(self) -> str:
+        """Return the first values in one line."""
+        return f"<der.Modes: {len(self.frequencies)} modes, {_first(self.frequencies)} Hz>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +63,11 @@ class BucklingModes:
     shapes: Array
     rotations: Array
     strains: Array
+
+    def __repr__(self) -> str:
+        """Return the first values in one line."""
+        factors = self.load_factors
+        return f"<der.BucklingModes: {len(factors)} modes, load factors {_first(factors)}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +100,16 @@ class Path:
     events: NDArray[np.str_]
     unstable_out_of_plane: NDArray[np.int64] | None = None
 
+    def __repr__(self) -> str:
+        """Return size, range and events in one line."""
+        low, high = self.factor.min(initial=np.inf), self.factor.max(initial=-np.inf)
+        kinds, counts = np.unique(self.events[self.events != ""], return_counts=True)
+        events = ", ".join(f"{kind} {count}" for kind, count in zip(kinds, counts, strict=True))
+        return (
+            f"<der.Path: {len(self.factor)} points on {len(np.unique(self.branch))} branches, "
+            f"load factors {low:.6g} to {high:.6g}, events: {events or 'none'}>"
+        )
+
     @property
     def stable(self) -> NDArray[np.bool_]:
         """Whether each point is stable, in its plane if the model is planar, shape (points,)."""
@@ -96,6 +118,11 @@ class Path:
     def rows(self, event: str, branch: int = 0) -> NDArray[np.int64]:
         """Return the rows of the events of one kind on a branch, in the order of the path."""
         return np.flatnonzero((self.events == event) & (self.branch == branch))
+
+
+def _first(values: Array) -> str:
+    shown = [f"{value:.6g}" for value in values[:_SHOWN]] + ["..."] * (len(values) > _SHOWN)
+    return ", ".join(shown) or "none"
 
 
 def make_modes(data: Mapping[str, Array]) -> Modes | None:

@@ -50,6 +50,12 @@ class Recording:
         """
         return result_of(self._simulation.scenario, self.states)
 
+    def __repr__(self) -> str:
+        """Return title and size in one line."""
+        times = " to ".join(f"{state.time:g}" for state in (self.states[0], self.states[-1]))
+        title, count = self._simulation.scenario.title, len(self.states)
+        return f"<der.Recording of {title!r}: {count} frames, t = {times} s>"
+
 
 def result_of(scenario: Scenario, states: Sequence[State]) -> Result:
     """Return states of simulations of a scene as the frames of a result.

@@ -12,6 +12,7 @@ from typing import Any
 
 from der._core import FileRecording, Scenario, read_run
 from der.errors import DerError
+from der.examples import PREFIX
 from der.result import Result, to_result
 from der.sweeps.store import FRAMES, is_sweep
 
@@ -34,7 +35,7 @@ def open_run(folder: str | os.PathLike[str]) -> Result:
     Raises
     ------
     FileNotFoundError
-        If there is no ``results.h5``.
+        If there is no ``results.h5``; of a scene the message says how to run it.
     ValueError
         If it is damaged, is no run file, or was written by another version of der; the message says
         what to do; if the folder is that of a sweep.
@@ -49,6 +50,9 @@ def open_run(folder: str | os.PathLike[str]) -> Result:
             f"export {folder} --format csv` writes its table, der.load_sweep reads it{advice}"
         )
     if not path.exists():
+        if folder.suffix in (".yaml", ".yml") or str(folder).startswith(PREFIX):
+            words = f"{folder} is a scene, and no folder of a run: `der run {folder}` writes one"
+            raise FileNotFoundError(words)
         raise FileNotFoundError(f"no run in {folder}: {path} does not exist")
     try:
         recording = read_run(path)

@@ -209,6 +209,20 @@ def test_no_stdout_is_no_error():
     assert (done.returncode, done.stderr) == (0, b"")
 
 
+@pytest.mark.parametrize("verb", ["plot", "animate", "view"])
+def test_a_scene_is_no_run(verb, scene, capsys):
+    for name in (str(scene), "example:finger"):
+        assert main([verb, name]) == 1
+        assert f"is a scene, and no folder of a run: `der run {name}`" in capsys.readouterr().err
+
+
+def test_study_of_an_example(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["study", "example:cantilever", "--nodes", "11", "21"]) == 0
+    assert capsys.readouterr().out.endswith("cantilever_study/study.png\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["cantilever_study"]
+
+
 def test_matplotlib_is_loaded_only_to_draw():
     script = (
         "import sys, der, der.cli\n"

@@ -15,6 +15,7 @@ import der
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from browsers import assert_no_errors, wait_for
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")])
@@ -268,6 +269,24 @@ def test_notebooks_are_their_pages_and_run(page, make_notebooks, tmp_path, monke
         exec(compile(source, f"{page}.ipynb, cell {number}", "exec"), names)
     printed = capsys.readouterr().out
     assert {"beam_study": "converged", "control": "off by 0."}[page] in printed
+
+
+def test_search_runs_in_a_page_that_is_a_file(browser, tmp_path):
+    """The site's stand-in for a worker takes messages before and after its script is loaded."""
+    shim = (DOCS / "assets" / "iframe-worker.js").read_text(encoding="utf-8")
+    twice = 'self.addEventListener("message", (event) => postMessage(2 * event.data))'
+    (tmp_path / "twice.js").write_text(twice)
+    use = (
+        'const worker = new Worker("twice.js"); window.heard = [];'
+        'worker.addEventListener("message", (event) => { heard.push(event.data);'
+        "if (heard.length < 2) worker.postMessage(21); }); worker.postMessage(4);"
+    )
+    page = tmp_path / "page.html"
+    page.write_text(f"<!DOCTYPE html><body><script>{shim}</script><script>{use}</script></body>")
+    browser.get(page.as_uri())
+    assert wait_for(browser, "heard.length == 2 && heard") == [8, 42]
+    assert browser.execute_script("worker.terminate(); return frames.length") == 0
+    assert_no_errors(browser)
 
 
 def test_tutorial_of_the_falling_rod(tutorial):

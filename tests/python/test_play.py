@@ -1,5 +1,6 @@
 """Scenes that are played: the player without a page, and its page in a browser."""
 
+import io
 import re
 import signal
 import subprocess
@@ -13,6 +14,7 @@ import pytest
 from browsers import REQUIRED, assert_no_errors, wait_for
 from der.playing.controls import controls_of, with_names
 from der.playing.player import Player
+from PIL import Image
 
 
 @pytest.fixture
@@ -261,6 +263,9 @@ def test_page(browser, still, monkeypatch, capfd):
     assert node == 8, "the nearest one"
     until(lambda: player.pulled[1][1] > 0.1)
     until(lambda: simulation.positions[node, 1] > 0.01)
+    picture = Image.open(io.BytesIO(browser.get_screenshot_as_png())).convert("RGB")
+    red, _, blue = np.moveaxis(np.asarray(picture, dtype=int), -1, 0)
+    assert 0.0 < (red > blue + 100).mean() < 0.02, "the hand and its line are small"
     ActionChains(browser).release().perform()
     until(lambda: player.pulled is None)
 
@@ -275,6 +280,12 @@ def test_page(browser, still, monkeypatch, capfd):
     slider.send_keys(Keys.ARROW_RIGHT * 5)
     button("Play")
     until(lambda: simulation.value("push.y") == pytest.approx(0.05))
+    box = browser.find_elements("css selector", "input[inputmode=decimal]")[1]
+    reach = control(player, "push.y").reach
+    for text, value in (("-1.25", -1.25), ("98", reach), ("0.5", 0.5)):
+        box.send_keys(Keys.CONTROL + "a")
+        box.send_keys(text)
+        until(lambda value=value: simulation.value("push.y") == pytest.approx(value))
     assert_no_errors(browser, but="inside passive event listener")  # of viser's own page
     browser.get("about:blank")
     thread.join(120)

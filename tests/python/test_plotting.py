@@ -1,6 +1,7 @@
 """Pictures: that what is drawn is what was computed, to scale and with its units."""
 
 import dataclasses
+from itertools import pairwise
 from types import SimpleNamespace
 
 import der
@@ -488,3 +489,20 @@ def test_modes_have_no_scale(tube):
     modes = der.run({**tube, "analysis": {"modes": {"count": 1}}})
     with pytest.raises(ValueError, match="a modes run have no scale"):
         modes.plot(scale=2.0)
+
+
+def test_labels_of_long_names_stay_apart(swing):
+    """They are parted after underscores, and a unit stays in one piece."""
+    tip = swing["output"]["probes"]["tip"]
+    moment = {"rod": "arm", "at": "start", "quantity": "moment"}
+    names = {f"height_of_the_tip_of_the_long_arm_{number}": tip for number in range(4)}
+    swing["output"]["probes"] = {**names, "moment_at_the_root": moment}
+    figure = der.run(swing).plot("probes")
+    figure.canvas.draw()
+    labels = [axes.yaxis.label for axes in figure.axes]
+    boxes = [label.get_window_extent() for label in labels]
+    for upper, lower in pairwise(boxes):
+        assert upper.y0 >= lower.y1
+    assert labels[0].get_text().replace("\n", "") == "height_of_the_tip_of_the_long_arm_0 [m]"
+    assert labels[-1].get_text().endswith("[N m]")
+    plt.close(figure)

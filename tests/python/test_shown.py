@@ -139,6 +139,46 @@ def test_sweeps_show_their_first_members(tube):
     assert plt.get_fignums() == open_before
 
 
+def test_verifications_and_studies_show_themselves():
+    open_before = plt.get_fignums()
+    found = der.verify("example:cantilever", levels=2)
+    assert repr(found).startswith(
+        "<der.Verification of 'Cantilever with a tip load, P L^2 / EI = 1': "
+    )
+    header, *rows = cells(found._repr_html_())
+    assert (header[:3], header[-1]) == (["probe", "value", "error"], "verdict")
+    assert [row[0] for row in rows] == ["tip_x", "tip_y", "root_moment"]
+    assert float(rows[1][1].split()[0]) == pytest.approx(found["tip_y"].value, rel=1e-5)
+    study = der.study("example:cantilever", nodes=[11, 21])
+    assert "2 configurations, probes: tip_x, tip_y, root_moment" in repr(study)
+    html = study._repr_html_()
+    assert len(pictures(html)) == 1
+    assert [": ".join(row) for row in cells(html)[1:]] == study.advice()
+    assert plt.get_fignums() == open_before
+
+
+def test_analyses_and_recordings_say_what_they_are():
+    assert repr(der.run("example:beam_modes").modes) == (
+        "<der.Modes: 4 modes, 24.2609, 152.04, 425.718, 834.237 Hz>"
+    )
+    many = der.Simulation("example:cantilever")
+    many.equilibrium()
+    assert repr(many.modes(9)).startswith("<der.Modes: 9 modes, ")
+    assert repr(many.modes(9)).endswith(", ... Hz>")
+    path = der.run("example:snap_through_arch").path
+    assert repr(path) == (
+        f"<der.Path: {len(path.factor)} points on 3 branches, load factors "
+        f"{path.factor.min():.6g} to {path.factor.max():.6g}, events: bifurcation 2, fold 2>"
+    )
+    simulation = der.Simulation("example:finger")
+    recording = simulation.recording()
+    simulation.step(10)
+    recording.add()
+    assert repr(recording) == (
+        "<der.Recording of 'A soft finger closes and opens': 2 frames, t = 0 to 0.025 s>"
+    )
+
+
 def test_view_without_a_path_is_a_temporary_file(result, monkeypatch):
     pytest.importorskip("plotly")
     opened = []

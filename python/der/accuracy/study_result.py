@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from der._core import Scenario
 from der.accuracy.study_plan import check_errors
 from der.accuracy.study_row import StudyRow, seconds_text
+from der.html import card
 from der.output_paths import written_whole
 
 if TYPE_CHECKING:
@@ -149,3 +150,15 @@ class Study:
         inexact = [probe for probe in self.probes if not self.is_exact(probe)]
         shown = inexact or self.probes[:1]
         return plot_study(self.scenario.title, [self.of(probe) for probe in shown])
+
+    def __repr__(self) -> str:
+        """Return title and size in one line."""
+        return f"<der.Study of {self.scenario.title!r}: {self._facts()}>"
+
+    def _repr_html_(self) -> str:
+        advice = [("probe", "what to take"), *(line.partition(": ")[::2] for line in self.advice())]
+        return card(self.scenario.title, self._facts(), self.plot, [advice])
+
+    def _facts(self) -> str:
+        configurations = len(self.rows) // max(len(self.probes), 1)
+        return f"{configurations} configurations, probes: {', '.join(self.probes) or 'none'}"

@@ -10,7 +10,8 @@ from typing import Any
 from der._core import Scenario
 from der.accuracy.error_bars import ErrorEstimate
 from der.accuracy.verified_value import VerifiedValue
-from der.tables import text_table
+from der.html import card
+from der.tables import Rows, text_table
 
 
 @dataclass(frozen=True)
@@ -87,12 +88,7 @@ class Verification:
     def __str__(self) -> str:
         """Return the table that ``der verify`` prints, what was run, notes and a summary."""
         shown = self._shown()
-        header = ("probe", "value", "error", "space", "time", "drawing", "extrapolated", "orders")
-        rows = [(*header, "verdict"), *map(_row, shown)]
-        if all(value.drawing is None for value in shown):
-            left_out = header.index("drawing")
-            rows = [row[:left_out] + row[left_out + 1 :] for row in rows]
-        lines = [self.scenario.title, "", *text_table(rows), ""]
+        lines = [self.scenario.title, "", *text_table(_table(shown)), ""]
         if len(self.meshes) > 1:
             lines.append(f"Space: {', '.join(self.meshes)}.")
         if len(self.steps) > 1:
@@ -103,6 +99,16 @@ class Verification:
         lines += [f"Note: {note.rstrip('.')}." for note in self.notes]
         lines.append(self._summary_line(shown))
         return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        """Return the title and what was found in one line."""
+        return f"<der.Verification of {self.scenario.title!r}: {self._facts()}>"
+
+    def _repr_html_(self) -> str:
+        return card(self.scenario.title, self._facts(), tables=[_table(self._shown())])
+
+    def _facts(self) -> str:
+        return self._summary_line(self._shown()).rstrip(".")
 
     def _shown(self) -> list[VerifiedValue]:
         """Return the values that tell something new.
@@ -140,6 +146,15 @@ class Verification:
         hidden = len(self.values) - total
         left_out = f"extremes at the start or the end, not shown: {hidden}; " if hidden else ""
         return f"{'. '.join(found)} ({left_out}{self.cpu_seconds:.2g} s of CPU time)."
+
+
+def _table(shown: Sequence[VerifiedValue]) -> Rows:
+    header = ("probe", "value", "error", "space", "time", "drawing", "extrapolated", "orders")
+    rows = [(*header, "verdict"), *map(_row, shown)]
+    if all(value.drawing is None for value in shown):
+        left_out = header.index("drawing")
+        rows = [row[:left_out] + row[left_out + 1 :] for row in rows]
+    return rows
 
 
 def _row(value: VerifiedValue) -> tuple[str, ...]:

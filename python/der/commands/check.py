@@ -11,7 +11,9 @@ from der.errors import DerError
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("scenes", nargs="+", metavar="SCENE", help="scene file (YAML)")
+    parser.add_argument(
+        "scenes", nargs="+", metavar="SCENE", help="scene file (YAML), or example:NAME"
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:

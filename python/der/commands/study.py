@@ -14,13 +14,16 @@ import argparse
 from pathlib import Path
 
 from der.arguments import whole_number_argument
+from der.examples import PREFIX
 from der.output_paths import check_output_folder, make_folder, output_folder, written_whole
 from der.progress import progress_on_terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("scene", metavar="SCENE", type=Path, help="scene file (YAML)")
+    parser.add_argument(
+        "scene", metavar="SCENE", type=Path, help="scene file (YAML), or example:NAME"
+    )
     parser.add_argument(
         "--nodes",
         nargs="+",
@@ -74,7 +77,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     if arguments.errors is not None:
         check_errors(arguments.errors)
-    out = arguments.out or Path(f"{arguments.scene.stem}_study")
+    out = arguments.out or Path(f"{arguments.scene.stem.removeprefix(PREFIX)}_study")
     check_output_folder(out)
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
     with progress_on_terminal() as progress:

@@ -29,7 +29,9 @@ _ALL_FAILED = 3
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("scene", metavar="SCENE", type=Path, help="scene file (YAML)")
+    parser.add_argument(
+        "scene", metavar="SCENE", type=Path, help="scene file (YAML), or example:NAME"
+    )
     parser.add_argument(
         "--vary",
         action="append",

@@ -21,7 +21,7 @@ _FLAGGED = 5
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("scene", metavar="SCENE", help="scene file (YAML)")
+    parser.add_argument("scene", metavar="SCENE", help="scene file (YAML), or example:NAME")
     parser.add_argument(
         "--json",
         type=output_file,

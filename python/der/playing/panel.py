@@ -57,7 +57,7 @@ class Panel:
         elif player.paused:
             state += ", paused"
         elif player.share < _REACHED:
-            state += f" asked for, {speed_text(player.share * player.speed)} reached"
+            state += f" asked for, {player.share:.0%} of it reached"
         self._status.content = state
         self._pause.label = "Play" if player.paused else "Pause"
         for control in self._untouched:
@@ -77,7 +77,8 @@ class Panel:
 
     def _set(self, control: Control, value: float) -> None:
         self._untouched.discard(control)
-        self._player.set(control, value)
+        # While a visitor types into its box, a slider also gives what is beyond its ends.
+        self._player.set(control, min(max(value, -control.reach), control.reach))
 
     def _reset(self) -> None:
         self._player.reset()

@@ -53,7 +53,9 @@ class Stage:
             for held in held_nodes(simulation.scenario)
         }
         self._hand = scene.add_icosphere("/hand", _HANDLE, rgb(LOAD))
-        self._pull = scene.add_line_segments("/pull", np.zeros((1, 2, 3)), rgb(LOAD), thickness=3.0)
+        self._pull = scene.add_line_segments(
+            "/pull", np.zeros((1, 2, 3)), rgb(LOAD), thickness=3.0, thickness_units="screen"
+        )
         self._look(server, self._on_stage(low))
 
     def show(self) -> None:

@@ -108,7 +108,7 @@ def plot_path(result: RunData, names: list[str]) -> Figure:
             if at.any():
                 label = event.replace("_", " ")
                 axes.plot(values[at], path.factor[at], marker, color=colour, label=label, zorder=5)
-        axes.set_xlabel(axis_label(name, probe.unit))
+        axes.set_xlabel(axis_label(name, probe.unit, (_WIDTH - 0.9) / len(names)))
     panels[0, 0].set_ylabel("load factor")
     panels[0, 0].plot([], [], label="stable", **_line(stable=True))
     panels[0, 0].plot([], [], label="unstable", **_line(stable=False))

@@ -17,7 +17,7 @@ from der.film import title_of
 from der.plotting.actuation import add_actuation_to_legend
 from der.plotting.analyses import plot_modes, plot_path
 from der.plotting.picture import Picture
-from der.plotting.probes import draw_probe, mark_times, shade_unreliable
+from der.plotting.probes import PROBE_HEIGHT, draw_probe, mark_times, shade_unreliable
 from der.plotting.shapes import Shape, make_exactly_equal, pick_frames
 from der.plotting.space import make_picture
 from der.plotting.style import (
@@ -42,7 +42,6 @@ _WIDTH = 7.2  # of the figure [inch]
 _LEFT = 0.9  # of it, at most, is left of the axes [inch]
 _SHAPE_WIDTH = 5.6  # of the axes of the shapes, beside their legend [inch]
 _SHAPE_HEIGHT = (1.7, 5.5)  # least and most [inch]
-_PROBE_HEIGHT = 1.55  # [inch]
 
 
 def plot(
@@ -219,7 +218,7 @@ def _plot_motion(
 ) -> Figure:
     result = pictures[0].result
     marks = result.times[frames]
-    heights = [_PROBE_HEIGHT] * len(names)
+    heights = [PROBE_HEIGHT] * len(names)
     if what == "probes":
         figure, panels = _figure(heights)
     else:

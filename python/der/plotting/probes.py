@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from der.plotting.style import MUTED, PALETTE, WARNING, axis_label
 
+PROBE_HEIGHT = 1.55  # of its panel [inch]
+
 
 def draw_probe(
     axes: Axes,
@@ -30,7 +32,7 @@ def draw_probe(
         For the label.
     """
     axes.plot(times, values, color=PALETTE[0])
-    axes.set_ylabel(axis_label(name, unit))
+    axes.set_ylabel(axis_label(name, unit, PROBE_HEIGHT - 0.1))
     axes.margins(x=0.01)
     _keep_rounding_flat(axes, values)
 

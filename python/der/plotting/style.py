@@ -34,8 +34,9 @@ ACTUATED = (PALETTE[3], PALETTE[4], "#6F42F5", PALETTE[5])
 #: Parts of a result that are not to be trusted.
 WARNING = "#B00020"
 
-#: Font sizes of titles [points].
-AXES_TITLE, FIGURE_TITLE = 11.0, 12.0
+#: Font sizes of titles and of labels of axes [points].
+AXES_TITLE, FIGURE_TITLE, AXIS_LABEL = 11.0, 12.0, 10.0
+_HARD_SPACE = "\u00a0"
 _TITLE_LINES = 4  # what is longer ends with three dots
 
 _SETTINGS: dict[Any, Any] = {
@@ -45,7 +46,7 @@ _SETTINGS: dict[Any, Any] = {
     "axes.formatter.use_mathtext": True,
     "axes.formatter.useoffset": False,
     "axes.grid": True,
-    "axes.labelsize": 10,
+    "axes.labelsize": AXIS_LABEL,
     "axes.prop_cycle": cycler(color=PALETTE),
     "axes.spines.right": False,
     "axes.spines.top": False,
@@ -121,9 +122,18 @@ def time_colours(count: int) -> list[ColorType]:
     return [colour_map(0.88 * i / (count - 1)) for i in range(count)]
 
 
-def axis_label(name: str, unit: str) -> str:
-    """Return ``name [unit]``, or the name alone for a quantity without a unit."""
-    return f"{name} [{unit}]" if unit not in ("", "1") else name
+def axis_label(name: str, unit: str, room: float | None = None) -> str:
+    """Return ``name [unit]``, or the name alone for a quantity without a unit.
+
+    Where the axis has a `room` [inch], in lines of at most that, parted after underscores.
+    """
+    label = f"{name} [{unit}]" if unit not in ("", "1") else name
+    if room is None:
+        return label
+    # A unit stays in one line, with spaces that do not break while it is parted.
+    parts = label.replace(unit, unit.replace(" ", _HARD_SPACE)).replace("_", "_ ")
+    lines = "\n".join(wrapped(parts, AXIS_LABEL, room))
+    return lines.replace("_ ", "_").replace(_HARD_SPACE, " ")
 
 
 def time_text(seconds: float) -> str:

@@ -151,8 +151,8 @@ def _names(sweep: SweepData, columns: Sequence[str] | None) -> list[str]:
     return names
 
 
-def _label(sweep: SweepData, name: str) -> str:
-    return axis_label(name.removesuffix(".final"), sweep.column(name).unit)
+def _label(sweep: SweepData, name: str, room: float | None = None) -> str:
+    return axis_label(name.removesuffix(".final"), sweep.column(name).unit, room)
 
 
 class _Marks:
@@ -232,7 +232,7 @@ def _plot_lines(sweep: SweepData, over: _Scale, names: list[str]) -> Figure:
         marks.draw_rings(axes, doubtful_without, np.zeros(len(doubtful_without)), **at_the_bottom)
         marks.draw_dots(axes, without, np.zeros(len(without)), **at_the_bottom)
         marks.draw_crosses(axes, failed, np.zeros(len(failed)), **at_the_bottom)
-        axes.set_ylabel(_label(sweep, name))
+        axes.set_ylabel(_label(sweep, name, _LINE_HEIGHT - 0.1))
         over.title(axes)
         axes.label_outer()
     handles, labels = _legend_of(panels)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import json
 import os
 import sys
@@ -57,7 +59,8 @@ def view(
     parts = {
         "STYLE": (_FOLDER / "style.css").read_text(encoding="utf-8"),
         "SCRIPT": (_FOLDER / "view.js").read_text(encoding="utf-8"),
-        "PLOTLY": get_plotlyjs(),
+        # Packed: it is most of the file.
+        "PLOTLY": base64.b64encode(gzip.compress(get_plotlyjs().encode())).decode("ascii"),
         # Within a script element "</script" would end it, and "<!--" change how it ends.
         "DATA": text.replace("<", "\\u003c"),
     }

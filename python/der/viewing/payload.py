@@ -79,6 +79,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
             name: _field_range(quantities[name].unit, values, result.rods, span)
             for name, values in film.fields.items()
         },
+        "probes": _probes(result, film, frames),
         "quantity": _COLOURED if _COLOURED in film.fields else "",
         "rods": [
             _rod(
@@ -148,16 +149,33 @@ def _field_range(unit: str, fields: list[Array], rods: list[Rod], span: float) -
 
     A quantity that varies by no more than rounding is constant; one that is no larger is 0.
     """
-    noise = _noise(rods, unit, span)
     low = min(float(values.min()) for values in fields)
     high = max(float(values.max()) for values in fields)
+    low, high = _wide(low, high, _noise(rods, unit, span))
+    return {"unit": unit, "low": low, "high": high}
+
+
+def _wide(low: float, high: float, noise: float) -> tuple[float, float]:
+    """Return a range that is more than noise."""
     size = max(abs(low), abs(high))
     if size <= noise:
-        low, high = -1.0, 1.0
-    elif high - low <= max(1e-9 * size, noise):
-        room = max(0.01 * size, noise)
-        low, high = low - room, high + room
-    return {"unit": unit, "low": low, "high": high}
+        return -1.0, 1.0
+    room = max(0.01 * size, noise) if high - low <= max(1e-9 * size, noise) else 0.0
+    return low - room, high + room
+
+
+def _probes(result: RunData, film: Film, frames: NDArray[np.int64]) -> list[dict[str, Any]]:
+    """Return the probes of a motion at the frames of the page, with the ranges of these."""
+    if film.times is None or len(frames) < 2:
+        return []
+    found = []
+    for name, probe in result.probes.items():
+        values = np.asarray(probe)[frames]
+        low, high = _wide(float(values.min()), float(values.max()), 0.0)
+        found.append(
+            {"name": name, "unit": probe.unit, "values": values.tolist(), "low": low, "high": high}
+        )
+    return found
 
 
 def _rod(rod: Rod, positions: Array, unit: float, fields: dict[str, Array]) -> dict[str, Any]:

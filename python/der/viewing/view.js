@@ -31,10 +31,8 @@
   // Any unit vector across `a`.
   const across = (a) => unit(cross(a, Math.abs(a[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]), [0, 1, 0]);
 
-  const floats = (text) => {
-    const bytes = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
-    return new Float32Array(bytes.buffer);
-  };
+  const bytes = (text) => Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+  const floats = (text) => new Float32Array(bytes(text).buffer);
   const rods = data.rods.map((rod) => ({
     ...rod,
     positions: floats(rod.positions),
@@ -256,7 +254,7 @@
   };
 
   // The state of the view.
-  const state = { frame: 0, chapter: 0, quantity: "", speed: 1, playing: false };
+  const state = { frame: 0, chapter: 0, quantity: "", speed: 1, playing: false, fits: 0 };
   const range = () => data.fields[state.quantity];
   const title = (name, unit) => (unit ? `${name} [${unit}]` : name);
   const LIGHT = { ambient: 0.75, diffuse: 0.5, specular: 0.08, roughness: 0.8 };
@@ -330,7 +328,7 @@
     const count = rods.reduce((sum, rod) => sum + rod.spheres.length, 0);
     for (const rod of rods) {
       const line = lineOf(rod, frame);
-      for (const [i, radius] of rod.spheres) addSphere(mesh, line[i], radius, count > 20 ? 6 : 14);
+      for (const [i, radius] of rod.spheres) addSphere(mesh, line[i], radius, count > 20 ? 8 : 20);
     }
     const look = { color: SPHERE, opacity: 0.35, lighting: LIGHT, hoverinfo: "skip" };
     return { type: "mesh3d", ...plain(mesh), ...look };
@@ -480,7 +478,7 @@
     // Inside by a little: Plotly leaves out what rounding puts beyond the ends.
     const inside = (n, share) => data.low[n] + share * (data.high[n] - data.low[n]);
     const [low, high] = [0, 1].map((end) => [0, 1].map((n) => inside(n, 1e-6 + end * (1 - 2e-6))));
-    const font = { color: "#444", size: 13 };
+    const font = { color: colour("text"), size: 13 };
     return [
       note(data.axes[0], [high[0], low[1], 0], font, { xanchor: "left", xshift: 10 }),
       note(data.axes[1], [low[0], high[1], 0], font, { yanchor: "bottom", yshift: 10 }),
@@ -495,11 +493,12 @@
     exponentformat: "none",
     showspikes: false,
     showbackground: false,
-    gridcolor: "#d4d4d4",
+    gridcolor: colour("line"),
     zeroline: false,
     nticks: Math.min(7, 2 + Math.ceil(7 * share)), // short axes have room for few
   });
 
+  const colour = (name) => getComputedStyle(document.body).getPropertyValue(`--${name}`);
   const NUMBERS = 90; // pixels beside the scene that its numbers take
   const layout = (labels) => {
     const size = data.high.map((value, n) => value - data.low[n]);
@@ -516,7 +515,9 @@
     return {
       margin: { l: 0, r: 0, t: 0, b: 0 },
       showlegend: false,
-      uirevision: "camera",
+      uirevision: `camera ${state.fits}`, // with another one Plotly forgets where it was
+      paper_bgcolor: colour("page"),
+      font: { color: colour("text") },
       scene: {
         aspectmode: "manual",
         aspectratio: { x, y, z },
@@ -545,9 +546,54 @@
     element("slider").value = frame;
     element("caption").textContent = data.captions[frame];
     showLegend(frame);
+    showProbes(frame);
     const [arrows, labels] = loads(frame);
     const own = [centreLines(frame), tubes(frame), spheres(frame), supports(frame)];
     return Plotly.react("scene", [...own, arrows, ...sleeves(frame), springs(frame), ...hinges(frame)], layout(labels), config);
+  };
+
+  // Probes over time, each with its value and a line at the frame that is shown.
+  const WIDE = 100; // of a picture
+  const HIGH = 40;
+  const shareOf = (frame) => {
+    const [first, last] = [data.times[0], data.times.at(-1)];
+    return (data.times[frame] - first) / (last - first);
+  };
+  const digits = (value) => String(Number(value.toPrecision(4)));
+  const makeProbes = () => {
+    element("probes").hidden = data.probes.length === 0;
+    for (const probe of data.probes) {
+      const { low, high } = probe;
+      const points = probe.values.map(
+        (value, frame) => `${WIDE * shareOf(frame)} ${(HIGH * (high - value)) / (high - low)}`,
+      );
+      const figure = document.createElement("figure");
+      figure.innerHTML =
+        `<figcaption><span></span><output></output></figcaption><svg viewBox="0 -2 ${WIDE} ${HIGH + 4}"` +
+        ` preserveAspectRatio="none"><path d="M${points.join("L")}"/><path class="cursor"/></svg>` +
+        `<small><span>${digits(low)}</span><span>to ${digits(high)}</span></small>`;
+      figure.querySelector("span").textContent = title(probe.name, probe.unit);
+      const svg = figure.querySelector("svg");
+      const seek = (event) => {
+        const { left, width } = svg.getBoundingClientRect();
+        const apart = data.times.map((_, frame) => Math.abs(left + width * shareOf(frame) - event.clientX));
+        pause();
+        show(apart.indexOf(Math.min(...apart)));
+      };
+      svg.addEventListener("pointerdown", (event) => {
+        svg.setPointerCapture(event.pointerId);
+        seek(event);
+      });
+      svg.addEventListener("pointermove", (event) => event.buttons && seek(event));
+      element("probes").append(figure);
+    }
+  };
+  const showProbes = (frame) => {
+    data.probes.forEach((probe, number) => {
+      const figure = element("probes").children[number];
+      figure.querySelector("output").textContent = digits(probe.values[frame]);
+      figure.querySelector(".cursor").setAttribute("d", `M${WIDE * shareOf(frame)} -2v${HIGH + 4}`);
+    });
   };
 
   // Controls.
@@ -605,6 +651,27 @@
     state.frame = first;
   };
 
+  const onKey = (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const move = (frame) => {
+      pause();
+      show(frame);
+    };
+    const acts = {
+      " ": () => element("play").click(),
+      ArrowLeft: () => move(state.frame - 1),
+      ArrowRight: () => move(state.frame + 1),
+      r: () => move(chapter().first),
+      f: () => {
+        state.fits += 1;
+        draw();
+      },
+    };
+    if (!(event.key in acts)) return;
+    event.preventDefault(); // or a button or a list that has the focus would act, too
+    acts[event.key]();
+  };
+
   const setUp = () => {
     document.title = data.title;
     element("title").textContent = data.title;
@@ -632,20 +699,36 @@
       pause();
       show(Number(event.target.value));
     });
+    makeProbes();
+    document.addEventListener("keydown", onKey);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
     const single = data.captions.length < 2;
     for (const id of ["play", "slider"]) element(id).hidden = single;
     return draw();
   };
 
+  // The page has Plotly packed, which makes the file 3 MB smaller.
+  const loadPlotly = async () => {
+    const unpacked = new Blob([bytes(element("plotly").textContent)])
+      .stream()
+      .pipeThrough(new DecompressionStream("gzip"));
+    const script = document.createElement("script");
+    script.textContent = await new Response(unpacked).text();
+    document.head.append(script);
+  };
+
   const canvas = document.createElement("canvas");
-  if (!(canvas.getContext("webgl2") || canvas.getContext("webgl"))) {
+  const hasWebgl = canvas.getContext("webgl2") || canvas.getContext("webgl");
+  if (!hasWebgl || !("DecompressionStream" in window)) {
     element("scene").className = "message";
     element("scene").textContent =
-      "This view needs WebGL, which this browser does not have or has switched off. Try another " +
-      "browser, or turn on hardware acceleration; der plot and der animate do without.";
+      "This view needs WebGL, and a browser of 2023 or later. Try another browser, or turn on " +
+      "hardware acceleration; der plot and der animate do without.";
     document.querySelector("footer").hidden = true;
     element("title").textContent = data.title;
     return;
   }
-  setUp().then(() => document.body.classList.add("ready"));
+  loadPlotly()
+    .then(setUp)
+    .then(() => document.body.classList.add("ready"));
 })();

@@ -145,6 +145,7 @@ class ArcBuilder {
     const auto enter_joint = [&](int number, const LegEnd& end) {
       dofs[to_size(2 * Kernel::kNodes + number)] = model_.dofs.rotation(end.rotation);
       c.direction[to_size(number)] = end.direction + (from_start ? 0.0 : kPi);
+      c.driven.control[to_size(number)] = end.driven;
     };
     if constexpr (Joints > 0) enter_joint(0, from_start ? leg_.start : leg_.end);
     if constexpr (Joints == 2) enter_joint(1, leg_.end);

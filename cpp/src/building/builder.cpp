@@ -352,6 +352,7 @@ Model build_model(const scenario::Scene& scene, LegOrder order) {
   find_joints(scene, model);
   for (const auto& joint : scene.joints) add_hinge(joint, model);
   number_controls(scene, model);
+  for (const auto& joint : scene.joints) drive_hinge(joint, model);
   find_force_nodes(scene, model);
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     add_support(scene.supports[i], i, model);

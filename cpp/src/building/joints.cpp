@@ -131,8 +131,7 @@ class Rotations {
     const RodMesh& mesh = model_.rods[rod];
     if (mesh.EI == 0.0 && mesh.EI_1 == 0.0) return -1;
     const int joint = points.joint[to_size(place)];
-    const bool rigid =
-        joint >= 0 && scene_.joints[to_size(joint)].kind == scenario::JointKind::Rigid;
+    const bool rigid = joint >= 0 && scene_.joints[to_size(joint)].shares_rotation();
     if (!rigid && !mesh.is_inner(place) && !points.turns[to_size(place)]) return -1;
     const auto key = rigid ? std::tuple<Index, Index>(-1, joint)
                            : std::tuple<Index, Index>(static_cast<Index>(rod), place);

@@ -71,6 +71,7 @@ class LegBuilder {
       const double direction = end.direction + (from_start ? 0.0 : kPi);
       dofs[to_size(2 * Kernel::kNodes + number)] = model_.dofs.rotation(end.rotation);
       c.direction[to_size(number)] = direction;
+      c.driven.control[to_size(number)] = end.driven;
       drawn[place] = {std::cos(direction), std::sin(direction)};
     };
     enter_joint(0, from_start ? leg_.start : leg_.end, 0);

@@ -5,6 +5,7 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/index.hpp"
+#include "der/scenario/joint.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/model_choice.hpp"
 #include "der/scenario/scenario.hpp"
@@ -50,6 +51,9 @@ scenario::Scene without(scenario::Scene scene, const Varying& varying) {
   } else if (varying.what == scenario::Varied::Supports) {
     for (std::size_t i = 0; i < scene.supports.size(); ++i) {
       if (chosen(i)) hold_still(scene.supports[i]);
+    }
+    for (scenario::Joint& joint : scene.joints) {
+      if (joint.prescribe && !varying.number) set_to_zero(joint.prescribe->angle);
     }
   } else {
     for (std::size_t i = 0; i < scene.actuations.size(); ++i) {

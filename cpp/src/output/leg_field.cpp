@@ -42,6 +42,15 @@ auto viscous_loads(const typename Kernel::Constants& constants, const DampingTim
                                 rates);
 }
 
+/// Those of an element next to joints, with what driven hinges add.
+template <class Constants, std::size_t Count>
+auto coordinates(const Constants& constants, const std::array<Index, Count>& dofs,
+                 const Model& model, const State& state) {
+  return constants.driven.turned(
+      [&](Index control) { return control_value(model, state, control); },
+      gather(dofs, state.positions));
+}
+
 /// Which loads: all that a section bears, or those that its strains alone make.
 enum class Part { Whole, Elastic };
 
@@ -80,7 +89,7 @@ class ArcReader {
     const ActuatedRest elongation(constants.elongation, 1, model);
     loads_ = [constants, dofs, elongation, times = damping_](Part part, const Model& now,
                                                              const State& state) {
-      const auto x = gather(dofs, state.positions);
+      const auto x = coordinates(constants, dofs, now, state);
       auto loads = Kernel::loads(constants, elongation.value(0, now, state), x);
       if (part == Part::Whole && times.stretching > 0.0) {
         const auto viscous = viscous_loads<Kernel>(constants, times, dofs, state);
@@ -290,7 +299,8 @@ class LegReader {
                                                                  const State& state) {
         typename Kernel::Angles natural = constants.rest;
         for (int i = 0; i < Kernel::kAngles; ++i) natural[i] += rest.value(i, now, state);
-        return sign * Kernel::moments(constants, natural, gather(dofs, state.positions))[k];
+        return sign *
+               Kernel::moments(constants, natural, coordinates(constants, dofs, now, state))[k];
       };
       if (rod_.damping.bending == 0.0) continue;
       viscous_[to_size(node)] = [constants, dofs, sign, k, times = rod_.damping](
@@ -327,7 +337,8 @@ class LegReader {
     return angle_between(vector(node - 1, model, state), vector(node, model, state));
   }
   static double slope_of(const LegEnd& end, const Model& model, const State& state) {
-    return end.direction + state.positions[model.dofs.rotation(end.rotation)];
+    const double driven = end.driven < 0 ? 0.0 : control_value(model, state, end.driven);
+    return end.direction + driven + state.positions[model.dofs.rotation(end.rotation)];
   }
   /// Direction [rad] of an edge within half a turn of a slope.
   [[nodiscard]] double edge_beside(double slope, Index edge, const Model& model,

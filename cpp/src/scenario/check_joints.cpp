@@ -104,11 +104,13 @@ class JointCheck {
     return true;
   }
 
-  /// A spring or a damping acts between the two rods of a hinge.
+  /// A spring, a damping or a drive acts between the two rods of a hinge.
   void check_sides(int number, const std::vector<Member>& members) {
     const Joint& joint = joint_of(number);
-    if (!joint.has_sides()) return;
-    const Path path = joint_path(number) / (joint.spring ? "spring" : "damping");
+    if (!joint.has_sides() && !joint.prescribe) return;
+    const Path path = joint_path(number) / (joint.prescribe ? "prescribe"
+                                            : joint.spring  ? "spring"
+                                                            : "damping");
     if (joint.kind == JointKind::Rigid) {
       report(path,
              "the rods of a rigid joint do not turn against one another: write 'kind: hinge', "
@@ -129,11 +131,66 @@ class JointCheck {
       report(path, fmt::format("rod '{}' has no stiffness against bending, EI: it bears no moment",
                                rod.name));
     }
+    if (joint.prescribe) check_drive(number, members, path);
+  }
+
+  /// A driven hinge has one rotation, which its second rod follows as far as it is turned.
+  void check_drive(int number, const std::vector<Member>& members, const Path& path) {
+    const Joint& joint = joint_of(number);
+    if (joint.has_sides()) {
+      report(path,
+             "holds the angle, so that a spring or a damping does nothing: remove one of them");
+    }
+    check_motion(context_, joint.prescribe->angle, path / "angle");
+    for (const Member& member : members) {
+      const Rod& rod = context_.scene.rods[static_cast<std::size_t>(member.rod)];
+      if (!damping_of(rod).any()) continue;
+      report(path,
+             fmt::format("this version does not have it beside a rod with internal damping, as "
+                         "'{}' is",
+                         rod.name));
+    }
+    const auto is_turned = [&](const std::string& rod, const Location& at) {
+      return rod == joint.of[1].rod && is_at(members[1], at);
+    };
+    const auto& scene = context_.scene;
+    for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
+      const Support& support = scene.supports[static_cast<std::size_t>(i)];
+      const bool holds =
+          support.clamps() || (support.spring && !support.spring->rotational_stiffness.empty());
+      if (holds && is_turned(support.rod, support.at)) report_turned(joint, {"supports", i});
+    }
+    for (int i = 0; i < static_cast<int>(scene.loads.size()); ++i) {
+      const auto* force = std::get_if<PointForce>(&scene.loads[static_cast<std::size_t>(i)].what);
+      if (force != nullptr && force->follower && is_turned(force->rod, force->at)) {
+        report_turned(joint, {"loads", i, PointForce::kKey});
+      }
+      const auto* moment = std::get_if<Moment>(&scene.loads[static_cast<std::size_t>(i)].what);
+      if (moment == nullptr || moment->joint != joint.name) continue;
+      report(
+          Path{"loads", i, Moment::kKey} / "joint",
+          fmt::format("the angle of hinge '{}' is prescribed, so that a moment between its sides "
+                      "does nothing: remove it, or 'prescribe'",
+                      joint.name));
+    }
+  }
+  void report_turned(const Joint& joint, const Path& path) {
+    report(path,
+           fmt::format("turns with rod '{}', which hinge '{}' turns against its other rod. "
+                       "Name '{}' first in 'of' of the hinge, and prescribe the opposite angle",
+                       joint.of[1].rod, joint.name, joint.of[1].rod));
+  }
+  bool is_at(const Member& member, const Location& at) {
+    if (at.kind == Location::Kind::All) return true;
+    const RestLine& line = *context_.lines[static_cast<std::size_t>(member.rod)];
+    const bool is_node = at.kind == Location::Kind::Node;
+    if (is_node && (at.node >= line.num_nodes() || at.node < -line.num_nodes())) return false;
+    return line.node_at(line.arc_length_of(at)) == member.node;
   }
 
   /// Tells who else is at the place of a member.
   void enter(int number, const std::vector<Member>& members, std::size_t k) {
-    JoinedNode joined{joint_of(number).kind == JointKind::Rigid, {}};
+    JoinedNode joined{joint_of(number).shares_rotation(), {}};
     for (std::size_t other = 0; other < members.size(); ++other) {
       if (other == k) continue;
       joined.others.push_back(CheckContext::node_key(members[other].rod, members[other].node));

@@ -45,11 +45,6 @@ void check_start(CheckContext& context, const Series& motion, const Path& path) 
                   start, start));
 }
 
-void check_motion(CheckContext& context, const Series& motion, const Path& path) {
-  check_constant(context, motion.constant(), path);
-  check_start(context, motion, path);
-}
-
 /// The nodes that a joint joins with one are held with it.
 void hold_joined(CheckContext& context, int number, std::int64_t node,
                  const std::vector<Hold>& held) {
@@ -161,6 +156,11 @@ void check_spring(CheckContext& context, int number) {
 }
 
 }  // namespace
+
+void check_motion(CheckContext& context, const Series& motion, const Path& path) {
+  check_constant(context, motion.constant(), path);
+  check_start(context, motion, path);
+}
 
 void check_supports(CheckContext& context) {
   const auto count = static_cast<int>(context.scene.supports.size());

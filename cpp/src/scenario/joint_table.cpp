@@ -17,6 +17,13 @@ Format<HingeSpring> spring_format() {
                                number("N m/rad", positive()), "Moment per angle."));
 }
 
+Format<HingeMotion> motion_format() {
+  return mapping(Table<HingeMotion>("motion of a hinge", "Drives a hinge, as a servo does.")
+                     .required("angle", &HingeMotion::angle, series("rad"),
+                               "Angle by which the second rod turns against the first one, "
+                               "counter-clockwise, from that at which they are drawn."));
+}
+
 }  // namespace
 
 Format<Joint> joint_format() {
@@ -37,7 +44,9 @@ Format<Joint> joint_format() {
           .optional("spring", &Joint::spring, spring_format(),
                     "Only with `kind: hinge`, between two rods: a spring that turns with them.")
           .optional("damping", &Joint::damping, number("N m s/rad", not_negative()),
-                    "Likewise: moment per rate of the angle between the two.", "0"));
+                    "Likewise: moment per rate of the angle between the two.", "0")
+          .optional("prescribe", &Joint::prescribe, motion_format(),
+                    "Only with `kind: hinge`, between two rods: its angle over time."));
 }
 
 }  // namespace der::scenario

@@ -45,6 +45,10 @@ void add_tables(const scenario::Actuation& actuation, std::vector<Table>& tables
   }
 }
 
+std::string path_of_angle(const scenario::Joint& joint) {
+  return fmt::format("joints.{}.prescribe.angle", joint.name);
+}
+
 /// Before its first entry and after its last one a table is constant.
 std::optional<MotionKink> first_kink(const scenario::Series& motion, double until) {
   if (motion.course.kind != scenario::Course::Kind::Linear) return std::nullopt;
@@ -74,6 +78,11 @@ std::vector<Table> tables(const scenario::Scene& scene) {
                scene.loads[i].what);
   }
   for (const scenario::Actuation& actuation : scene.actuations) add_tables(actuation, found);
+  for (const scenario::Joint& joint : scene.joints) {
+    if (!joint.prescribe) continue;
+    const scenario::Series& angle = joint.prescribe->angle;
+    found.push_back({path_of_angle(joint), angle.times, angle.course});
+  }
   return found;
 }
 
@@ -116,6 +125,13 @@ std::vector<MotionKink> motion_kinks(const scenario::Scene& scene, double until)
       kinks.push_back(*kink);
     };
     scenario::for_each_motion(scene.supports[i], enter);
+  }
+  for (const scenario::Joint& joint : scene.joints) {
+    if (!joint.prescribe) continue;
+    std::optional<MotionKink> kink = first_kink(joint.prescribe->angle, until);
+    if (!kink) continue;
+    kink->path = path_of_angle(joint);
+    kinks.push_back(*kink);
   }
   return kinks;
 }

@@ -79,10 +79,10 @@ void count_along(const RodMesh& rod, const Model& model, State& state) {
 /// Moves the rotations of joints to a written shape, to within the bending of one edge. Whole turns
 /// count along rods, from rod to rod, from rotations that are held; where none is, from one that
 /// stays within half a turn of where it was.
-void count_rotations(const Model& model, Vector& positions) {
+void count_rotations(const Model& model, const Vector& controls, Vector& positions) {
   struct End {
     Index rotation;  // degree of freedom
-    double turned;   // its edge against the first of its rod [rad]
+    double turned;   // its edge against the first of its rod, less what drives it [rad]
   };
   struct RodEnds {
     double turned;  // the first edge since the rod was drawn, to within whole turns [rad]
@@ -96,7 +96,8 @@ void count_rotations(const Model& model, Vector& positions) {
     const auto add = [&](const LegEnd& end, Index edge) {
       if (end.rotation < 0) return;
       const Index rotation = model.dofs.rotation(end.rotation);
-      ends.push_back({rotation, turned[edge]});
+      const double driven = end.driven < 0 ? 0.0 : controls[end.driven];
+      ends.push_back({rotation, turned[edge] - driven});
       known[to_size(rotation)] = !model.dofs.is_free(rotation);
     };
     for (const Leg& leg : rod.legs) {
@@ -153,10 +154,12 @@ double angle_of(Index edge, const Model& model, const State& state) {
 }  // namespace
 
 void follow_written(const Model& model, State& state) {
-  if (model.has_rotations() && model.dimension == 2) count_rotations(model, state.positions);
-  if (state.followed.size() == 0) return;
   Vector controls;
   evaluate_controls(model, state, state.time, controls);
+  if (model.has_rotations() && model.dimension == 2) {
+    count_rotations(model, controls, state.positions);
+  }
+  if (state.followed.size() == 0) return;
   if (state.followed == unwrapped_of_reference(model)) {
     state.followed = followed_with_clamps(model, controls);
   }

@@ -281,14 +281,22 @@ def _joined(kind: str) -> Thing:
         foot = straight("foot", knee, [knee[0] + 0.4, knee[1] + 0.1])
         hip = [{"rod": "rod", "at": {"node": 4}}, {"rod": "arm", "at": "start"}]
         ankle = [{"rod": "arm", "at": "end"}, {"rod": "foot", "at": "start"}]
-        turning = {"rod": "arm", "at": "start"} if kind == "hinge" else {"joint": "hip"}
+        turning = {
+            "rigid": {"joint": "hip"},
+            "hinge": {"rod": "arm", "at": "start"},
+            "driven": {"rod": "rod", "at": {"node": 4}},
+        }[kind]
         probed = {"quantity": "rotation", "joint": "ankle"}
-        sides = {"spring": {"rotational_stiffness": 0.6}, "damping": 0.02}
+        hinge = {
+            "rigid": {},
+            "hinge": {"kind": "hinge", "spring": {"rotational_stiffness": 0.6}, "damping": 0.02},
+            "driven": {"kind": "hinge", "prescribe": {"angle": 0.4}},
+        }[kind]
         between = [{"moment": {"joint": "hip", "moment": 0.1}}] if kind == "hinge" else []
         return {
             "rods": [arm, foot],
             "joints": [
-                {"name": "hip", "of": hip, "kind": kind} | (sides if kind == "hinge" else {}),
+                {"name": "hip", "of": hip, **hinge},
                 {"name": "ankle", "of": ankle},
             ],
             "supports": [
@@ -654,6 +662,7 @@ RESTS: dict[str, tuple[tuple[str, ...], Thing]] = {
         STRIP,
         lambda m: _held({"at": "end", "clamp": True, "prescribe": {"twist": 0.8, "x": -0.05}}),
     ),
+    "driven hinge": (FLAT, _joined("driven")),
 }
 
 

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "der/core/types.hpp"
+#include "der/energies/driven_tangents.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/natural_strain_offset.hpp"
@@ -47,6 +48,7 @@ struct ArcStretch {
     int edge = 0;                          ///< which of the edges it is
     std::array<double, Joints> direction;  ///< as in EndCell [rad]
     NaturalStrainOffset elongation{};      ///< [m]
+    DrivenTangents<Joints> driven{};
   };
 
   /// The derivatives of the energy by the length of the edge [N] and by the turning angles [N m].
@@ -85,7 +87,8 @@ struct ArcStretch {
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here, const Coordinates& x,
                        LocalTerm<kDofs>& out) {
-    const Response response(c, c.elongation.value(here.controls), x);
+    const Response response(c, c.elongation.value(here.controls),
+                            c.driven.turned_by(here.controls, x));
     const double per_length = c.EA / c.rest_length;
     const double arc = response.arc();
     const double extension = response.extension;

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "der/core/types.hpp"
+#include "der/energies/driven_tangents.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/curvature_measure.hpp"
@@ -46,6 +47,7 @@ struct EndCell {
     /// turned.
     std::array<double, Joints> direction{};
     NaturalStrainOffset actuated{};  ///< of `rest`: an entry for each angle
+    DrivenTangents<Joints> driven{};
 
     [[nodiscard]] Angles natural(const Vector& controls) const {
       if (actuated.entry < 0) return rest;
@@ -75,7 +77,7 @@ struct EndCell {
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here, const Coordinates& x,
                        LocalTerm<kDofs>& out) {
-    const Response response(c, c.natural(here.controls), x);
+    const Response response(c, c.natural(here.controls), c.driven.turned_by(here.controls, x));
     out.energy = response.energy;
     if constexpr (D == Derivatives::Energy) return;
 

@@ -55,8 +55,8 @@ struct RestGradient<ArcStretch<Edges, Joints>> : StretchingRestGradient<ArcStret
   static Eigen::Matrix<double, 1, 1> of(const typename Kernel::Constants& c,
                                         const Configuration& here,
                                         const typename Kernel::Coordinates& x) {
-    return Eigen::Matrix<double, 1, 1>(
-        Kernel::by_elongation(c, c.elongation.value(here.controls), x));
+    return Eigen::Matrix<double, 1, 1>(Kernel::by_elongation(c, c.elongation.value(here.controls),
+                                                             c.driven.turned_by(here.controls, x)));
   }
 };
 
@@ -146,7 +146,7 @@ struct RestGradient<EndCell<Curvature, Edges, Joints>> {
   }
   static typename Kernel::Angles of(const typename Kernel::Constants& c, const Configuration& here,
                                     const typename Kernel::Coordinates& x) {
-    return -Kernel::loads(c, c.natural(here.controls), x);
+    return -Kernel::loads(c, c.natural(here.controls), c.driven.turned_by(here.controls, x));
   }
 };
 

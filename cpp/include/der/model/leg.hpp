@@ -14,6 +14,7 @@ struct LegEnd {
   Index rotation = -1;
   double direction = 0.0;  ///< of the leg's tangent where the joint has not turned [rad]; planar
   SectionFrame section{};  ///< of the leg there, in space
+  Index driven = -1;       ///< control by which a driven hinge turns the tangent besides [rad]
 };
 
 /// An edge of a leg whose arc is longer or shorter than it (energies/arc_stretch.hpp).

@@ -286,10 +286,11 @@ struct Model {
   Vector reference_positions;
   Vector initial_velocities;  ///< [m/s]
   Mass mass;
-  Vector damping;        ///< [N s/m], one entry a degree of freedom: drag and linear damping
-  bool damped = false;   ///< whether any of that is there
-  bool viscous = false;  ///< whether any rod has internal damping (ElementList::damped)
-  Vector gravity_force;  ///< [N] constant weight without buoyancy
+  Vector damping;       ///< [N s/m], one entry a degree of freedom: drag and linear damping
+  bool damped = false;  ///< whether any of that is there
+  std::vector<Index> driven_hinges;  ///< the controls of their angles [rad]
+  bool viscous = false;              ///< whether any rod has internal damping (ElementList::damped)
+  Vector gravity_force;              ///< [N] constant weight without buoyancy
   /// Controls of the acceleration of gravity [m/s^2], where it follows any; its weight is then
   /// among the controlled forces (model/gravity.hpp). -1: there is none, or it is constant.
   std::array<Index, 3> gravity_controls{-1, -1, -1};

@@ -6,6 +6,7 @@
 
 #include "der/scenario/location.hpp"
 #include "der/scenario/mark.hpp"
+#include "der/scenario/series.hpp"
 
 namespace der::scenario {
 
@@ -37,16 +38,25 @@ struct HingeSpring {
   double rotational_stiffness = 0.0;  ///< [N m/rad]
 };
 
+/// How a hinge is driven.
+struct HingeMotion {
+  Series
+      angle;  ///< of its second rod against the first one, from that at which they are drawn [rad]
+};
+
 /// Joins rods at a point: at their ends or inside.
 struct Joint {
   std::string name;
   std::vector<JointMember> of;  ///< two or more
   JointKind kind = JointKind::Rigid;
-  std::optional<HingeSpring> spring;  ///< of a hinge of two rods, as is the damping
-  double damping = 0.0;               ///< moment per rate of the angle [N m s/rad]
+  std::optional<HingeSpring> spring;     ///< of a hinge of two rods, as is the damping
+  double damping = 0.0;                  ///< moment per rate of the angle [N m s/rad]
+  std::optional<HingeMotion> prescribe;  ///< likewise: it is driven
   Mark mark;
 
   [[nodiscard]] bool has_sides() const { return spring || damping > 0.0; }
+  /// Whether one rotation turns all rods; a driven hinge turns the second one further.
+  [[nodiscard]] bool shares_rotation() const { return kind == JointKind::Rigid || prescribe; }
 };
 
 }  // namespace der::scenario

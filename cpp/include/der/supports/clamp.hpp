@@ -39,12 +39,13 @@ void for_each_turning_control(const Clamp& clamp, const Use& use) {
   }
 }
 
-/// The same for all clamps of a model.
+/// The same for all clamps of a model, and for its driven hinges.
 template <class Use>
 void for_each_turning_control(const Model& model, const Use& use) {
   for (const RodMesh& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) for_each_turning_control(clamp, use);
   }
+  for (const Index control : model.driven_hinges) use(control);
 }
 
 inline bool any_clamp_turns(const Model& model) {

@@ -50,7 +50,7 @@ def probes() -> dict:
         (3.5, {}),
         (9.0, {}),
         (0.7, {"fix": ["x", "y"]}),
-        (-2.0, {"fix": ["y"]}),
+        (0.4, {"fix": ["y"]}),
     ],
 )
 def test_a_hinge_held_at_an_angle_is_a_corner(angle, tip):

@@ -624,10 +624,10 @@ def shuffled() -> Law:
     def write(scene: Scene) -> Scene:
         scene = copy.deepcopy(scene)
         loads, supports = len(scene.get("loads", ())), len(scene.get("supports", ()))
-        # A moment between two rods acts on the second.
+        # A moment between two rods acts on the second, and an angle is its.
         motors = {load.get("moment", {}).get("joint") for load in scene.get("loads", ())}
         for joint in scene.get("joints", ()):
-            if joint.get("kind") != "hinge" or joint["name"] not in motors:
+            if "prescribe" not in joint and joint["name"] not in motors:
                 joint["of"] = joint["of"][::-1]
         for key in ("rods", "joints", "supports", "loads", "actuation"):
             if key in scene:

@@ -249,7 +249,7 @@ typename EndCell<Curvature, Edges, Joints>::Constants sample_constants(
   c.stiffness = Stiffness::Identity() + root * root.transpose();
   for (double& rest : c.rest) rest = uniform(random, -1.0, 1.0);
   for (double& angle : c.direction) angle = uniform(random, -0.5, 0.5);
-  c.driven.control.back() = kRotation;
+  c.driven.control.back() = kElongation;  // a small angle
   c.actuated = {kStrains};
   return c;
 }
@@ -265,7 +265,7 @@ typename ArcStretch<Edges, Joints>::Constants sample_constants(const ArcStretch<
   c.form = form + form.transpose();
   c.edge = static_cast<int>(uniform(random, 0.0, Edges - 1e-9));
   for (double& angle : c.direction) angle = uniform(random, -0.5, 0.5);
-  if constexpr (Joints > 0) c.driven.control.back() = kRotation;
+  if constexpr (Joints > 0) c.driven.control.back() = kElongation;
   c.elongation = {kElongation};
   return c;
 }

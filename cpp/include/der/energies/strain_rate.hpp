@@ -132,9 +132,17 @@ struct StrainRate<EndCell<Curvature, Edges, Joints>>
     return result;
   }
   static typename Base::Gradient gradient(const typename Base::Constants& c,
-                                          const Configuration& /*here*/,
+                                          const Configuration& here,
                                           const typename Base::Local& x) {
-    return Kernel::gradients(c, x);
+    return Kernel::gradients(c, c.driven.turned_by(here.controls, x));
+  }
+  static typename Base::Rates driven(const typename Base::Constants& c,
+                                     const Configuration& /*here*/,
+                                     const typename Base::Local& /*x*/,
+                                     const typename Base::Gradient& gradient,
+                                     const Vector& turn_rates) {
+    const typename Base::Local still = Base::Local::Zero();
+    return gradient * c.driven.turned_by(turn_rates, still);
   }
 };
 
@@ -163,12 +171,21 @@ struct StrainRate<ArcStretch<Edges, Joints>> : StrainRateBase<ArcStretch<Edges, 
     return Vec3(viscosity, -viscosity, 0.0).asDiagonal();
   }
   static typename Base::Gradient gradient(const typename Base::Constants& c,
-                                          const Configuration& /*here*/,
+                                          const Configuration& here,
                                           const typename Base::Local& x) {
-    const auto [of_arc, of_edge] = Kernel::length_gradients(c, x);
+    const auto [of_arc, of_edge] =
+        Kernel::length_gradients(c, c.driven.turned_by(here.controls, x));
     typename Base::Gradient result;
     result << of_arc.transpose(), of_edge.transpose();
     return result;
+  }
+  static typename Base::Rates driven(const typename Base::Constants& c,
+                                     const Configuration& /*here*/,
+                                     const typename Base::Local& /*x*/,
+                                     const typename Base::Gradient& gradient,
+                                     const Vector& turn_rates) {
+    const typename Base::Local still = Base::Local::Zero();
+    return gradient * c.driven.turned_by(turn_rates, still);
   }
 };
 

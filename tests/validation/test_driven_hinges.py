@@ -100,6 +100,19 @@ def test_whole_turns_of_a_hinge_count():
     assert result.positions[-1][-1] == pytest.approx([1 + np.cos(20), np.sin(20)], abs=1e-9)
 
 
+def test_a_path_turns_a_hinge_by_the_load_factor():
+    scene = {
+        "rods": rods(),
+        "joints": [driven(3.0)],
+        "supports": [{"rod": "a", "at": "start", "clamp": True}],
+        "analysis": "static",
+        "output": {"probes": {"angle": {"joint": "pin", "quantity": "angle"}}},
+    }
+    result = der.continuation(scene, to=1.0, vary="supports")
+    assert result.probes["angle"] == pytest.approx(3.0 * result.path.factor, abs=1e-9)
+    assert result.positions[-1][-1] == pytest.approx([1 + np.cos(3), np.sin(3)], abs=1e-9)
+
+
 TURN = {"times": [0, 0.5], "values": [0, 2.0], "smooth": True}
 
 

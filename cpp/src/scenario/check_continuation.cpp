@@ -1,5 +1,6 @@
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <type_traits>
@@ -50,6 +51,12 @@ VariedKind varied_kind(const Scene& scene, Varied vary) {
   }
   return {"actuation", "change of a rest shape", "add an item to 'actuation'",
           scene.actuations.size()};
+}
+
+/// All prescribed motions are those of supports and of hinges.
+bool drives_a_hinge(const Scene& scene) {
+  return std::any_of(scene.joints.begin(), scene.joints.end(),
+                     [](const Joint& joint) { return joint.prescribe.has_value(); });
 }
 
 bool can_vary(const Scene& scene, Varied vary, std::size_t number) {
@@ -104,6 +111,10 @@ void check_continuation(CheckContext& context) {
                             fmt::format("there is no {}.{}: the scene has {} of them, counted "
                                         "from 0",
                                         kind, *continuation->number, count));
+    return;
+  }
+  if (continuation->vary == Varied::Supports && !continuation->number &&
+      drives_a_hinge(context.scene)) {
     return;
   }
   std::vector<std::string> others;

@@ -24,6 +24,7 @@ enum Control : Index {
   kRotation,
   kTurn,
   kElongation,
+  kDriven,
   kStrains,
   kJoints = kStrains + 3,  ///< blocks of two joints in space
   kNumControls = kJoints + 2 * JointBlock::kSize
@@ -46,6 +47,7 @@ inline Configuration sample_configuration(Random& random) {
   here.controls[kRotation] = uniform(random, -1.0, 1.0);
   here.controls[kTurn] = uniform(random, -1.0, 1.0);
   here.controls[kElongation] = uniform(random, -0.1, 0.1);
+  here.controls[kDriven] = 0.07;
   for (Index i = kStrains; i < kJoints; ++i) here.controls[i] = uniform(random, -0.5, 0.5);
   return here;
 }
@@ -249,7 +251,7 @@ typename EndCell<Curvature, Edges, Joints>::Constants sample_constants(
   c.stiffness = Stiffness::Identity() + root * root.transpose();
   for (double& rest : c.rest) rest = uniform(random, -1.0, 1.0);
   for (double& angle : c.direction) angle = uniform(random, -0.5, 0.5);
-  c.driven.control.back() = kElongation;  // a small angle
+  c.driven.control.back() = kDriven;
   c.actuated = {kStrains};
   return c;
 }
@@ -265,7 +267,7 @@ typename ArcStretch<Edges, Joints>::Constants sample_constants(const ArcStretch<
   c.form = form + form.transpose();
   c.edge = static_cast<int>(uniform(random, 0.0, Edges - 1e-9));
   for (double& angle : c.direction) angle = uniform(random, -0.5, 0.5);
-  if constexpr (Joints > 0) c.driven.control.back() = kElongation;
+  if constexpr (Joints > 0) c.driven.control.back() = kDriven;
   c.elongation = {kElongation};
   return c;
 }

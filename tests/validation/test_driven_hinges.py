@@ -178,6 +178,27 @@ def test_a_program_drives_a_hinge():
     assert simulation.positions[-1] == pytest.approx([1 + np.cos(0.8), np.sin(0.8)], abs=1e-3)
 
 
+def test_a_run_goes_on_from_where_the_hinge_is(tmp_path):
+    clamp = {"rod": "a", "at": "start", "clamp": True}
+    turn = {"times": [0, 0.5], "values": [0, 0.7], "smooth": True}
+    scene = {
+        "rods": rods(),
+        "joints": [driven(turn)],
+        "supports": [clamp],
+        "time": {"duration": 0.6, "step": 0.01},
+    }
+    der.run(scene, out=tmp_path / "first")
+    later = {**scene, "start_from": str(tmp_path / "first")}
+    with pytest.raises(der.DerError, match=r"hinge 'pin' begins at an angle of 0 rad.* at 0.7 rad"):
+        der.run(later)
+    held = {**later, "joints": [driven({"times": [0, 1], "values": [0.7, 0.7]})]}
+    assert der.run(held).status == "completed"
+    free = {**scene, "joints": [{**PIN, "kind": "hinge"}]}
+    der.run(free, out=tmp_path / "free")
+    with pytest.raises(der.DerError, match="turned freely"):
+        der.run({**scene, "start_from": str(tmp_path / "free")})
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

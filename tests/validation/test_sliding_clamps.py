@@ -200,6 +200,8 @@ def test_a_turned_guide_at_a_joint_and_without_one(model):
     [
         ({"clamp": False, "fix": ["y"], "free": ["x"]}, "'free' is of a clamp"),
         ({"free": ["x", "x"]}, "'x' is free twice"),
+        ({"free": ["z"]}, "has no z"),
+        ({"free": ["x"], "fix": ["y"]}, "holds every component that is not in 'free'"),
         ({"free": ["x"], "prescribe": {"x": 0.1}}, "'x' is both free and prescribed"),
         ({"free": ["x"], "spring": {"stiffness": [1, 1]}}, "y of node 10 .* is held by support 1"),
     ],

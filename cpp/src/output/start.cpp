@@ -34,6 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Rest lengths closer than this share of a rod's length are the same: texts have that many digits.
+constexpr double kSameAngle = 1e-6;  // [rad]
 constexpr double kSameLength = 1e-6;
 
 std::string names_of(const std::vector<SavedRod>& rods) {
@@ -154,7 +155,6 @@ double difference(const ClampTurn& a, const ClampTurn& b, const Vec3& tangent) {
 /// Throws IoError where a clamp of a run over time begins turned otherwise than the same clamp was
 /// in that frame, by their tables. What these hold as drawn there a program may have turned.
 void check_clamps(const std::string& from, const LastFrame& last, const Simulation& simulation) {
-  constexpr double kSame = 1e-6;  // [rad]
   const Scenario before = Scenario::parse(last.scene);
   const auto& analysis = before.scene().analysis;
   if (std::holds_alternative<scenario::ContinuationAnalysis>(analysis))
@@ -170,13 +170,43 @@ void check_clamps(const std::string& from, const LastFrame& last, const Simulati
       if (!other.clamps() || other.rod != clamp.rod || nodes_at(other.at, rod) != places) continue;
       const ClampTurn was = turn_of(other, last.time, tangent);
       const double jump = difference(was, turn_of(clamp, 0.0, tangent), tangent);
-      if (was.may_be_moved || jump <= kSame) continue;
+      if (was.may_be_moved || jump <= kSameAngle) continue;
       throw IoError(fmt::format(
           "start_from: a clamp of rod '{}' begins {:.3g} rad from how it was turned in the last "
           "frame of '{}': the run would begin with a jump. Let the tables of its 'prescribe' begin "
           "with the values that they have there",
           clamp.rod, jump, from));
     }
+  }
+}
+
+/// The same for a driven hinge, and where it was not driven there.
+void check_hinges(const std::string& from, const LastFrame& last, const Simulation& simulation) {
+  const Scenario before = Scenario::parse(last.scene);
+  if (std::holds_alternative<scenario::ContinuationAnalysis>(before.scene().analysis))
+    return;  // times are factors
+  for (const scenario::Joint& hinge : simulation.scenario().scene().joints) {
+    if (!hinge.prescribe) continue;
+    const auto& others = before.scene().joints;
+    const auto other =
+        std::find_if(others.begin(), others.end(),
+                     [&](const scenario::Joint& joint) { return joint.name == hinge.name; });
+    if (other == others.end()) continue;
+    if (other->kind == scenario::JointKind::Hinge && !other->prescribe) {
+      throw IoError(fmt::format(
+          "start_from: hinge '{}' turned freely in '{}', and a prescribed angle would begin with a "
+          "jump. Prescribe it there, too",
+          hinge.name, from));
+    }
+    const double was = other->prescribe ? value_at(other->prescribe->angle, last.time) : 0.0;
+    const double begins = value_at(hinge.prescribe->angle, 0.0);
+    const bool may_be_moved = other->prescribe && was == 0.0;
+    if (may_be_moved || std::abs(begins - was) <= kSameAngle) continue;
+    throw IoError(fmt::format(
+        "start_from: hinge '{}' begins at an angle of {:.3g} rad, and it was at {:.3g} rad in the "
+        "last frame of '{}': the run would begin with a jump. Let the table of its 'prescribe' "
+        "begin with that",
+        hinge.name, begins, was, from));
   }
 }
 
@@ -311,6 +341,7 @@ void apply_start(Simulation& simulation, const CancelCallback& beat) {
     apply_prescribed_motion(model, controls, state.positions);
     check_held_nodes(from, last, model, state);
     check_clamps(from, last, simulation);
+    check_hinges(from, last, simulation);
   }
   // Frames are followed with the clamps as they were.
   state.ramps = ways_of_clamps(last, simulation);

@@ -100,6 +100,9 @@ void check_support(CheckContext& context, int number) {
     check_motion(context, support.axis_rotation->angle, path / "prescribe" / "rotation" / "angle");
   }
   if (support.twist) check_motion(context, *support.twist, path / "prescribe" / "twist");
+  if (context.diagnostics.dimension() == 2 && support.clamps() && !support.clamps(Component::Z)) {
+    context.diagnostics.add(path / "free", "a scene of two components has no z: remove it");
+  }
   const std::optional<int> rod = context.find_rod(support.rod, path / "rod");
   if (!rod) return;
   const auto nodes = context.nodes_at(*rod, support.at, path / "at", support.holds());

@@ -102,7 +102,7 @@ struct Example {
   std::string_view table;
   std::string_view lines;
 };
-constexpr std::array<Example, 36> kExamples{{
+constexpr std::array<Example, 37> kExamples{{
     {"rod", R"(rods:
   - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
      cross_section: {circle: {radius: 5 mm}},
@@ -168,6 +168,16 @@ joints:
   - {name: corner, of: [{rod: beam, at: end}, {rod: post, at: start}]}
 supports:
   - {rod: post, at: end, clamp: true})"},
+    {"motion of a hinge", R"(rods:
+  - {name: beam, nodes: 11, from: [0, 0], to: [1, 0], cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}}
+  - {name: arm, nodes: 11, from: [1, 0], to: [1, -1], cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}}
+joints:
+  - {name: servo, kind: hinge, of: [{rod: beam, at: end}, {rod: arm, at: start}],
+     prescribe: {angle: {times: [0, 1], values: [0, 90 deg], smooth: true}}}
+supports:
+  - {rod: beam, at: start, clamp: true})"},
     {"support", R"(supports:
   - {rod: rod, at: start, clamp: true}
   - {rod: rod, at: end, fix: [y]})"},

@@ -133,7 +133,8 @@ std::string contradiction(const SupportText& support) {
   const PrescribeText& motion = support.motion;
   const char* held = support.clamp == Clamp::Tangent ? "tangent" : "true";
   if (support.clamps() && !support.fix.empty()) {
-    return fmt::format("'clamp: {}' holds every component already: remove 'fix'", held);
+    return fmt::format("'clamp: {}' holds every component{}: remove 'fix'", held,
+                       support.free.empty() ? " already" : " that is not in 'free'");
   }
   if (support.clamps() && support.free.empty() && support.spring) {
     return fmt::format("'clamp: {}' holds all that a spring could: remove one of them", held);

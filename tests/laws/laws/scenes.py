@@ -281,27 +281,27 @@ def _joined(kind: str) -> Thing:
         foot = straight("foot", knee, [knee[0] + 0.4, knee[1] + 0.1])
         hip = [{"rod": "rod", "at": {"node": 4}}, {"rod": "arm", "at": "start"}]
         ankle = [{"rod": "arm", "at": "end"}, {"rod": "foot", "at": "start"}]
-        turning = {
+        turnings: dict[str, Scene] = {
             "rigid": {"joint": "hip"},
             "hinge": {"rod": "arm", "at": "start"},
             "driven": {"rod": "rod", "at": {"node": 4}},
-        }[kind]
+        }
         probed = {"quantity": "rotation", "joint": "ankle"}
-        hinge = {
+        kinds: dict[str, Scene] = {
             "rigid": {},
             "hinge": {"kind": "hinge", "spring": {"rotational_stiffness": 0.6}, "damping": 0.02},
             "driven": {"kind": "hinge", "prescribe": {"angle": 0.4}},
-        }[kind]
+        }
         between = [{"moment": {"joint": "hip", "moment": 0.1}}] if kind == "hinge" else []
         return {
             "rods": [arm, foot],
             "joints": [
-                {"name": "hip", "of": hip, **hinge},
+                {"name": "hip", "of": hip, **kinds[kind]},
                 {"name": "ankle", "of": ankle},
             ],
             "supports": [
                 *CLAMP,
-                {**turning, "spring": {"rotational_stiffness": 0.8}},
+                {**turnings[kind], "spring": {"rotational_stiffness": 0.8}},
                 {"rod": "foot", "at": "end", "fix": ["y"]},
                 {"joint": "ankle", "spring": {"stiffness": 2.0}},
             ],

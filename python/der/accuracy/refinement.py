@@ -178,7 +178,10 @@ def _refine_rod(
         rod["points"] = places.points.tolist()
     elif "shape" not in rod:
         rod["nodes"] = places.elements + 1
+    probes = _probes(scene).values()
     for item in _what_stands_on(scene, rod):
+        if other_curve and any(item is probe for probe in probes) and "side" not in item:
+            places.leave_open(item)
         for key in ("at", "from", "to"):
             if key in item:
                 item[key] = places.moved(item[key])
@@ -197,12 +200,15 @@ def _is_per_node(rod: dict[str, Any], key: str) -> bool:
 def _what_stands_on(scene: dict[str, Any], rod: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """Yield everything that has a place along the rod."""
     yield from rod.get("spheres") or []
-    probes = (scene.get("output") or {}).get("probes") or {}
     loads = (what for _, what in _loads(scene))
     members = (member for joint in scene.get("joints") or [] for member in joint["of"])
-    for item in (*(scene.get("supports") or []), *loads, *members, *probes.values()):
+    for item in (*(scene.get("supports") or []), *loads, *members, *_probes(scene).values()):
         if item.get("rod") == rod["name"]:
             yield item
+
+
+def _probes(scene: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    return (scene.get("output") or {}).get("probes") or {}
 
 
 def _resampled(rod: dict[str, Any], factor: Fraction, other_curve: bool) -> Array:
@@ -248,6 +254,23 @@ class _Places:
         if self._factor.denominator != 1:
             return place
         return float(np.interp(s, self._old_arc, self._new_arc[:: self._factor.numerator]))
+
+    def leave_open(self, probe: dict[str, Any]) -> None:
+        """Move a probe between nodes to where its share of the old length is on the new curve.
+
+        Points tell neither where it is on the curve between them: by its element, or by its length.
+        """
+        place = probe.get("at")
+        if self.points is None or self._factor.denominator != 1:
+            return
+        if not (place == "middle" or isinstance(place, float | int)):
+            return
+        share = 0.5 if place == "middle" else float(place) / self._old_arc[-1]
+        if np.min(np.abs(self._old_arc / self._old_arc[-1] - share)) > _SAME_PLACE:
+            at = np.interp(
+                share * self._new_arc[-1], self._new_arc[:: self._factor.numerator], self._old_arc
+            )
+            probe["at"] = float(at)
 
     def _moved_node(self, node: int) -> int:
         # A negative number counts from the end: -1 is the last, which in a ring is no end.

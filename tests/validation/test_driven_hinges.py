@@ -141,7 +141,7 @@ def test_free_rods_that_a_motor_turns_keep_their_momenta(integrator):
     assert momentum == pytest.approx([0, 0], abs=1e-11)
     assert spin == pytest.approx(0.0, abs=2e-4 if integrator != "implicit_midpoint" else 1e-10)
     assert np.abs(v).max() > 0.01
-    # What the motor gives is what the rods have: the moment that the second one exerts is opposite.
+    # The rods have the energy that the motor gives. The second rod exerts the opposite moment.
     t = np.clip(np.asarray(result.times) / 0.5, 0, 1)
     angle = 2.0 * (10 * t**3 - 15 * t**4 + 6 * t**5)
     motor = -np.asarray(result.probes["motor"])

@@ -40,8 +40,8 @@ struct HingeSpring {
 
 /// How a hinge is driven.
 struct HingeMotion {
-  Series
-      angle;  ///< of its second rod against the first one, from that at which they are drawn [rad]
+  /// Of its second rod against the first one, from that at which they are drawn [rad].
+  Series angle;
 };
 
 /// Joins rods at a point: at their ends or inside.

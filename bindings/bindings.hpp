@@ -23,4 +23,7 @@ void bind_loops(py::module_& module);
 void bind_unanswered_signals(py::module_& module);
 void bind_progress(py::module_& module);
 
+// Gives all functions of the module signatures that `inspect.signature` and `help` read.
+void show_signatures(const py::module_& module);
+
 }  // namespace der::python

@@ -19,4 +19,5 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_loops(module);
   bindings::bind_unanswered_signals(module);
   bindings::bind_progress(module);
+  bindings::show_signatures(module);
 }

@@ -424,8 +424,9 @@ void bind_actions(PySimulationClass& cls) {
            "another time step too: time goes on from that of the state. What `set` can set has to\n"
            "be the same, in the same order. Raises ValueError that says what does not fit.")
       .def("record", &record, py::arg("callback") = py::none(),
-           py::arg("until") = std::numeric_limits<double>::infinity(), py::arg("tick") = py::none(),
-           py::arg("out") = py::none(),
+           // Spelled as a number that Python can read in the signature.
+           py::arg_v("until", std::numeric_limits<double>::infinity(), "1e999"),
+           py::arg("tick") = py::none(), py::arg("out") = py::none(),
            "Run from the present state to the end of the scene, to time `until` [s], or until\n"
            "`callback()` returns false after a step. `tick()` is called now and then; `out` is a\n"
            "folder to write the run to. A failure is told by the recording, not raised.\n"

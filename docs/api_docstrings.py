@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import griffe
 from der import _core
-
-SIGNATURE = re.compile(r"\A\w+\(.*\) -> .*\n+")
 
 
 class CompiledDocstrings(griffe.Extension):
@@ -25,7 +22,7 @@ def _describe(stub: Any, found: Any) -> None:
         real = getattr(found, name, None)
         if member.is_alias or real is None:
             continue
-        text = SIGNATURE.sub("", getattr(real, "__doc__", None) or "")
+        text = getattr(real, "__doc__", None) or ""
         if text and (member.is_class or member.is_function or member.is_attribute):
             member.docstring = griffe.Docstring(text.strip(), parent=member, parser="numpy")
         if member.is_class:

@@ -663,6 +663,31 @@ def test_motion_to_the_other_side_is_called_so(column, monkeypatch):
     assert sum("mirror image" in note for note in verification.notes) == 1
 
 
+def test_a_rod_that_swings_is_not_its_own_mirror_image(hanging):
+    """Straight shapes at two angles have a mirror between them, which no symmetry has."""
+    coarse, fine = (der.run(hanging, {"time.duration": end}) for end in (0.2, 0.4))
+    assert are_far_apart(coarse, fine)
+    assert not are_mirrored(coarse, fine)
+
+
+@pytest.fixture
+def hanging():
+    return {
+        "gravity": [0, -9.81],
+        "rods": [
+            {
+                "name": "arm",
+                "shape": {"line": {"from": [0, 0], "to": [1, 0]}},
+                "nodes": 6,
+                "cross_section": {"circle": {"radius": 0.02}},
+                "material": {"young_modulus": 1e9, "density": 1000},
+            }
+        ],
+        "supports": [{"at": {"rod": "arm", "point": "start"}, "kind": "pinned"}],
+        "time": {"duration": 0.4, "step": 0.01},
+    }
+
+
 def bend_the_other_way(scene, monkeypatch):
     """Give the scene a slight natural curvature, and finer meshes the opposite one."""
     scene["rods"][0]["natural_curvature"] = 1e-3

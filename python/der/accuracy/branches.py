@@ -54,17 +54,23 @@ def are_mirrored(coarse: Result, fine: Result) -> bool:
     """Whether the final shape of one run is the mirror image of that of the other.
 
     The mirror that fits best is found by W. Kabsch's method (Acta Cryst. A 32, 1976, 922), which
-    takes the singular vectors of the covariance, with a determinant of -1 here.
+    takes the singular vectors of the covariance, with a determinant of -1 here. It has to leave the
+    initial shape as it is, too: a straight rod that swings has a mirror between any two instants.
     """
     if not are_far_apart(coarse, fine):
         return False
     here, there = _shared_nodes(coarse, fine)
-    here, there = here - here.mean(axis=0), there - there.mean(axis=0)
-    left, _, right = np.linalg.svd(there.T @ here)
+    middle, center = here.mean(axis=0), there.mean(axis=0)
+    left, _, right = np.linalg.svd((there - center).T @ (here - middle))
     flip = np.ones(here.shape[1])
     flip[-1] = -np.sign(np.linalg.det(left @ right))
-    left_over = np.linalg.norm(here - there @ (left * flip) @ right, axis=1)
-    return bool(np.max(left_over) < _MIRRORED * distance(coarse, fine))
+    mirror = (left * flip) @ right
+    initial = Model(coarse.scenario).initial_positions
+    left_over = [
+        np.linalg.norm(shape - middle - (image - center) @ mirror, axis=1)
+        for shape, image in ((here, there), (initial, initial))
+    ]
+    return bool(np.max(np.concatenate(left_over)) < _MIRRORED * distance(coarse, fine))
 
 
 def _shared_nodes(coarse: Result, fine: Result) -> tuple[Array, Array]:

@@ -1,17 +1,18 @@
 """The type stubs of der._core say what the module has.
 
-stubtest of mypy compares the names; the signatures, which it cannot see in a compiled module, are
-compared here with those that pybind11 writes into the docstrings.
+stubtest of mypy compares the names; the signatures that `inspect` tells are compared here, too,
+and every public thing has one.
 """
 
 import ast
 import importlib.util
 import inspect
-import re
+import pydoc
 import subprocess
 import sys
 from importlib import resources
 
+import der
 import pytest
 from der import _core
 
@@ -19,6 +20,15 @@ STUB = ast.parse(resources.files("der").joinpath("_core.pyi").read_text())
 
 #: Arrays to write into, whose setters only say so.
 WRITABLE = {"positions", "velocities", "theta", "spin", "extra_force"}
+
+
+KINDS = {
+    inspect.Parameter.POSITIONAL_ONLY: "/",
+    inspect.Parameter.POSITIONAL_OR_KEYWORD: "",
+    inspect.Parameter.VAR_POSITIONAL: "*args",
+    inspect.Parameter.KEYWORD_ONLY: "*",
+    inspect.Parameter.VAR_KEYWORD: "**",
+}
 
 
 def stub_functions():
@@ -62,36 +72,18 @@ def stub_signature(definition):
     return listed
 
 
-def docstring_signature(function, *, takes_keywords):
-    """The same, read off the first line of a docstring of pybind11."""
-    line = function.__doc__.splitlines()[0]
-    inside = re.fullmatch(r"\w+\((.*)\) -> .*", line).group(1)
-    listed, kind = [], ""
-    for part in reversed(split_arguments(inside)):
-        name = part.split(":")[0].split("=")[0].strip()
-        if name == "/":
-            kind = "/"
-        elif name == "**kwargs" and not takes_keywords:
-            pass  # taken for the sake of a message that says what to write
-        elif name in ("*", "*args"):  # the latter are taken for the same reason
-            listed = [("*" if kind == "" else kind, *after) for kind, *after in listed]
-        elif name.startswith("**"):
+def compiled_signature(function, *, takes_keywords):
+    """The same, of a function of the module."""
+    listed = []
+    for parameter in list(inspect.signature(function).parameters.values()):
+        kind = KINDS[parameter.kind]
+        if kind == "*args" or (kind == "**" and not takes_keywords):
+            continue  # taken for the sake of a message that says what to write
+        if parameter.name != "self":
             # pybind11 calls them kwargs, the stub by what they are.
-            listed.insert(0, ("**", "overrides", False))
-        elif name not in ("self", "arg0"):
-            listed.insert(0, (kind, name, "=" in part.split(":", 1)[-1]))
+            name = "overrides" if kind == "**" else parameter.name
+            listed.append((kind, name, parameter.default is not parameter.empty))
     return listed
-
-
-def split_arguments(text):
-    parts, depth = [""], 0
-    for character in text:
-        depth += {"[": 1, "(": 1, "]": -1, ")": -1}.get(character, 0)
-        if character == "," and depth == 0:
-            parts.append("")
-        else:
-            parts[-1] += character
-    return [part.strip() for part in parts if part.strip()]
 
 
 @pytest.mark.parametrize(("name", "definition"), list(stub_functions()))
@@ -104,7 +96,7 @@ def test_signatures(name, definition):
         assert found.fset is None or definition.name in WRITABLE
     else:
         takes_keywords = definition.args.kwarg is not None
-        said = docstring_signature(found, takes_keywords=takes_keywords)
+        said = compiled_signature(found, takes_keywords=takes_keywords)
         assert said == stub_signature(definition)
 
 
@@ -118,8 +110,7 @@ def documented():
 @pytest.mark.parametrize("name", list(documented()))
 def test_everything_has_a_docstring(name):
     lines = [line for line in look_up(name).__doc__.splitlines() if line.strip()]
-    text = [line for line in lines if not re.match(r"\w+\(.*\) -> ", line)]
-    assert text[0].strip().endswith((".", ":")) or len(text) > 1
+    assert lines[0].strip().endswith((".", ":")) or len(lines) > 1
 
 
 @pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="mypy is not installed")
@@ -127,6 +118,7 @@ def test_names(tmp_path):
     # The metaclass of pybind11, pickling, and constructors that only raise are not promised.
     (tmp_path / "allowed").write_text(
         "der\\._core\\.[A-Z]\\w+\n"
+        "der\\._core\\.Simulation\\.prescribe\n"  # takes more for the sake of its message
         "der\\._core\\.\\w+\\.__(init|new|getstate|setstate|reduce_ex|repr)__\n"
     )
     line = [sys.executable, "-m", "mypy.stubtest", "der._core", "--ignore-missing-stub"]
@@ -145,3 +137,36 @@ def test_nothing_is_missing_in_the_stub():
             members = {member.name for member in stubbed[name].body if hasattr(member, "name")}
             missing = {m for m in vars(value) if not m.startswith("_")} - members
             assert not missing, f"{name}: {missing}"
+
+
+def public_functions():
+    """Yield what can be called of the package: functions, classes and their methods."""
+    for name in der.__all__:
+        value = getattr(der, name)
+        if not callable(value):
+            continue
+        # Warnings are Python's own; a class of the engine without a constructor is only returned.
+        made = "__init__" in vars(value) if value.__module__ == "der._core" else True
+        if not inspect.isclass(value):
+            yield name, value
+        elif not issubclass(value, Warning) and made:
+            yield name, value
+        if inspect.isclass(value):
+            for method, found in vars(value).items():
+                if not method.startswith("_") and callable(getattr(value, method)):
+                    if not isinstance(found, property):
+                        yield f"{name}.{method}", getattr(value, method)
+
+
+@pytest.mark.parametrize(("name", "function"), list(public_functions()))
+def test_everything_public_has_a_signature_and_a_docstring(name, function):
+    signature = inspect.signature(function)
+    assert "kwargs" not in str(signature) or name in ("Simulation.prescribe", "Scenario.parse")
+    assert inspect.getdoc(function)
+
+
+def test_help_shows_a_signature():
+    assert "step(self, n=1)" in pydoc.render_doc(der.Simulation.step)
+    assert str(inspect.signature(der.Simulation.record)).startswith(
+        "(self, callback=None, until=inf"
+    )

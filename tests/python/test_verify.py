@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import der
 import numpy as np
 import pytest
+from der.accuracy.branches import are_far_apart, are_mirrored
 from der.accuracy.error_bars import ErrorEstimate, estimate_error
 from der.accuracy.event_matching import match_places
 from der.accuracy.noise import ExactBelow, exact_below

@@ -145,17 +145,18 @@ def public_functions():
         value = getattr(der, name)
         if not callable(value):
             continue
-        # Warnings are Python's own; a class of the engine without a constructor is only returned.
-        made = "__init__" in vars(value) if value.__module__ == "der._core" else True
         if not inspect.isclass(value):
             yield name, value
-        elif not issubclass(value, Warning) and made:
+            continue
+        # Warnings are Python's own; a class of the engine without a constructor is only returned.
+        returned = value.__module__ == "der._core" and (
+            type(vars(value)["__init__"]).__name__ == "wrapper_descriptor"
+        )
+        if not issubclass(value, Warning) and not returned:
             yield name, value
-        if inspect.isclass(value):
-            for method, found in vars(value).items():
-                if not method.startswith("_") and callable(getattr(value, method)):
-                    if not isinstance(found, property):
-                        yield f"{name}.{method}", getattr(value, method)
+        for method in vars(value):
+            if not method.startswith("_") and callable(getattr(value, method)):
+                yield f"{name}.{method}", getattr(value, method)
 
 
 @pytest.mark.parametrize(("name", "function"), list(public_functions()))

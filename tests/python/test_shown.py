@@ -180,7 +180,6 @@ def test_analyses_and_recordings_say_what_they_are():
 
 
 def test_view_without_a_path_is_a_temporary_file(result, monkeypatch):
-    pytest.importorskip("plotly")
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     monkeypatch.setattr("sys.platform", "linux")

@@ -12,13 +12,10 @@ from dataclasses import replace
 import der
 import numpy as np
 import pytest
-from browsers import REQUIRED, assert_no_errors, wait_for
+from browsers import assert_no_errors, wait_for
 from der.fields import fields_of, rod_fields
 from der.viewing.payload import make_payload
 from PIL import Image
-
-if not REQUIRED:
-    pytest.importorskip("plotly")
 
 
 def unpack(text, *shape):
@@ -35,7 +32,7 @@ def test_page_holds_the_run_and_nothing_from_elsewhere(swing, tmp_path):
     swing["title"] = "Swing </script><b>&amp; <!--<script>"
     result = der.run(swing)
     page = result.view(tmp_path / "view.html")
-    assert page.stat().st_size < 2.3e6, "Plotly is packed"
+    assert page.stat().st_size < 1.0e6, "Plotly is packed"
     data = payload_of(page)
     assert data["title"] == swing["title"]
     count = len(result.times)
@@ -264,12 +261,6 @@ def test_long_runs_leave_out_frames(swing, monkeypatch):
     assert data["note"].startswith(f"{kept} of 21 saved frames")
     assert data["times"][-1] == result.times[-1]
     assert data["chapters"][0]["last"] == kept - 1
-
-
-def test_without_plotly(swing, tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "plotly.offline", None)
-    with pytest.raises(ModuleNotFoundError, match="pip install plotly"):
-        der.run(swing).view(tmp_path / "view.html")
 
 
 def test_command(swing, tmp_path):

@@ -1,7 +1,4 @@
-"""Write an interactive 3D view of a run: one HTML file that opens offline in a browser.
-
-Requires the package plotly.
-"""
+"""Write an interactive 3D view of a run: one HTML file that opens offline in a browser."""
 
 from __future__ import annotations
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import gzip
 import json
 import os
 import sys
@@ -15,6 +14,8 @@ from der.output_paths import written_whole
 from der.run_data import RunData
 
 _FOLDER = Path(__file__).parent
+#: The npm package plotly.js-gl3d-dist-min 4.1.1, packed by `gzip -9n`: most of a view.
+_PLOTLY = _FOLDER / "plotly-gl3d.min.js.gz"
 
 
 def view(
@@ -42,25 +43,16 @@ def view(
 
     Raises
     ------
-    ModuleNotFoundError
-        Without the package plotly, whose script is put into the file.
     ValueError
         If the run has nothing to show.
     """
-    try:
-        from plotly.offline import get_plotlyjs
-    except ModuleNotFoundError:
-        raise ModuleNotFoundError(
-            "a view requires the package plotly: pip install plotly"
-        ) from None
     from der.viewing.payload import make_payload
 
     text = json.dumps(make_payload(result), separators=(",", ":"), allow_nan=False)
     parts = {
         "STYLE": (_FOLDER / "style.css").read_text(encoding="utf-8"),
         "SCRIPT": (_FOLDER / "view.js").read_text(encoding="utf-8"),
-        # Packed: it is most of the file.
-        "PLOTLY": base64.b64encode(gzip.compress(get_plotlyjs().encode())).decode("ascii"),
+        "PLOTLY": base64.b64encode(_PLOTLY.read_bytes()).decode("ascii"),
         # Within a script element "</script" would end it, and "<!--" change how it ends.
         "DATA": text.replace("<", "\\u003c"),
     }

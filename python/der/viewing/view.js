@@ -707,7 +707,7 @@
     return draw();
   };
 
-  // The page has Plotly packed, which makes the file 3 MB smaller.
+  // The page has Plotly packed, which makes the file 1 MB smaller.
   const loadPlotly = async () => {
     const unpacked = new Blob([bytes(element("plotly").textContent)])
       .stream()

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "der/model/location.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/supports/axial_spring.hpp"
 
 namespace der::python {
 namespace {
@@ -47,13 +49,19 @@ std::vector<SpringSupport> springs(const Scenario& scenario) {
   return result;
 }
 
+std::vector<std::array<Index, 2>> axial_springs(const Scenario& scenario) {
+  const scenario::Scene& scene = scenario.scene();
+  const Model model = build_model(scene);
+  std::vector<std::array<Index, 2>> ends;
+  for (const auto& spring : scene.springs) ends.push_back(nodes_of(spring, scene, model));
+  return ends;
+}
+
 std::vector<Index> hinges(const Scenario& scenario) {
   const Model model = build_model(scenario.scene());
   std::vector<Index> nodes;
   for (const scenario::Joint& joint : scenario.scene().joints) {
-    if (joint.kind == scenario::JointKind::Rigid) continue;
-    const RodMesh& rod = model.rod(joint.of.front().rod);
-    nodes.push_back(rod.node(nodes_at(joint.of.front().at, rod).front()));
+    if (joint.kind != scenario::JointKind::Rigid) nodes.push_back(node_of(joint, model));
   }
   return nodes;
 }
@@ -132,6 +140,8 @@ void bind_spring(py::module_& module) {
             .format(spring.rod, spring.stiffness, spring.rotational_stiffness);
       });
   module.def("springs", &springs, py::arg("scenario"), "Return every spring support of the scene.");
+  module.def("axial_springs", &axial_springs, py::arg("scenario"),
+             "Return the row numbers in `positions` of both ends of each spring between joints.");
   module.def("hinges", &hinges, py::arg("scenario"),
              "Return the row numbers of all hinges in `positions`.");
 }

@@ -40,6 +40,8 @@ const char* kind_name(QuantityKind kind) {
       return "actuation";
     case QuantityKind::Joint:
       return "joint";
+    case QuantityKind::Spring:
+      return "spring";
     case QuantityKind::Energy:
       return "energy";
   }

@@ -24,7 +24,7 @@ def fields_of(model: Model) -> dict[str, Quantity]:
     and velocities are left out, as the vectors are exported; the shape without stress is one of
     them where actuations change it.
     """
-    left_out = {"turn", "ring", "support", "actuation", "joint", "energy"}
+    left_out = {"turn", "ring", "support", "actuation", "joint", "spring", "energy"}
     if not model.is_actuated:
         left_out.add("natural")
     along_rods = [

@@ -423,7 +423,7 @@ def _with_analysis(scenario: Scenario, analysis: Any) -> Scenario:
     scene.get("output", {}).pop("every", None)
     if scene.get("start_from") == "equilibrium":
         del scene["start_from"]  # it is looked for anyway
-    for key in ("loads", "supports", "actuation"):
+    for key in ("loads", "supports", "joints", "springs", "actuation"):
         if key in scene:
             scene[key] = _at_time_0(scene[key])
     return Scenario.from_dict({**scene, "analysis": analysis})

@@ -120,6 +120,28 @@ def test_names_for_what_has_none(swing):
     assert reaches["gravity.x"] == reaches["gravity.y"] == (19.7, "m/s^2")
 
 
+def test_sliders_of_servos_and_tendons(swing):
+    arm = swing["rods"][0]
+    hand = {**arm, "name": "hand", "from": arm["to"], "to": [arm["to"][0], arm["to"][1] - 0.1]}
+    swing["rods"].append(hand)
+    pin = [{"rod": "arm", "at": "end"}, {"rod": "hand", "at": "start"}]
+    servo = {"angle": {"times": [0, 1], "values": [0, 1.5]}}
+    swing["joints"] = [
+        {"name": "wrist", "kind": "hinge", "of": pin, "prescribe": servo},
+        {"name": "root", "of": [{"rod": "arm", "at": "start"}]},
+        {"name": "tip", "of": [{"rod": "hand", "at": "end"}]},
+    ]
+    swing["springs"] = [{"name": "tendon", "between": ["root", "tip"], "stiffness": 1}]
+    simulation = der.Simulation(with_names(der.Scenario.from_dict(swing)))
+    sliders = {one.path: one for one in controls_of(simulation)}
+    assert (sliders["wrist.angle"].least, sliders["wrist.angle"].reach) == (-3.0, 3.0)
+    length = np.linalg.norm(np.subtract(hand["to"], arm["from"]))
+    tendon = sliders["tendon.rest_length"]
+    assert tendon.least == 0.0
+    assert tendon.reach == pytest.approx(2 * length, rel=0.05)
+    assert tendon.unit == "m"
+
+
 @pytest.mark.parametrize("name", ["finger", "spun_strip", "simply_supported", "falling_beam_3"])
 @pytest.mark.filterwarnings("ignore::der.DerWarning")
 def test_a_hand_pulls_and_lets_go(name):

@@ -172,6 +172,32 @@ def sprung(n: int) -> Scene:
     return scene
 
 
+def tied(n: int) -> Scene:
+    """Springs between tips, one of them tight as drawn, and one between the ends of a rod."""
+    scene = scene_of(
+        [
+            rod("beam", [0, 0], [1, 0], 10 * n),
+            rod("arm", [0.4, 0], [0.4, 0.6], 6 * n, stiffness={"EI": 0.7}),
+            rod("post", [-0.5, 0], [-0.5, 0.6], 6 * n, stiffness={"EI": 0.4}),
+        ],
+        [
+            hinge("hip", at("beam", 0.4), at("arm", "start")),
+            joint("tip", at("beam", "end")),
+            joint("top", at("arm", "end")),
+            joint("head", at("post", "end")),
+            joint("foot", at("post", "start")),
+        ],
+        [clamp("beam", "start"), clamp("post", "start")],
+        [force("beam", "end", 0.5, -1)],
+    )
+    scene["springs"] = [
+        {"name": "guy", "between": ["head", "top"], "stiffness": 8, "rest_length": 0.6},
+        {"name": "tie", "between": ["tip", "top"], "stiffness": 20},
+        {"name": "string", "between": ["head", "foot"], "stiffness": 5, "rest_length": 0.2},
+    ]
+    return scene
+
+
 def curved(n: int) -> Scene:
     """Natural curvatures that differ from rod to rod."""
     return scene_of(
@@ -284,6 +310,7 @@ SCENES: list[Callable[[int], Scene]] = [
     braced,
     gerber,
     sprung,
+    tied,
     curved,
     stretched,
     near,
@@ -309,6 +336,10 @@ def probed(network: Network) -> dict[str, tuple[dict[str, Any], float]]:
                     probe["side"] = side
                 exact = network.read(quantity, leg.rod, s, side)
                 probes[f"{quantity}-{number}-{place}"] = (probe, exact)
+    for name in network.springs:
+        for quantity, exact in zip(("length", "force"), network.spring(name), strict=True):
+            probe = {"spring": name, "quantity": f"spring_{quantity}"}
+            probes[f"spring-{name}-{quantity}"] = (probe, exact)
     for number, key in enumerate(network.supports):
         if network.supports.count(key) == 1:
             for quantity, exact in zip(REACTIONS, network.reaction(number), strict=True):
@@ -712,10 +743,15 @@ def free_frame(integrator: str, step: float, **time: Any) -> Scene:
 
 
 @pytest.mark.parametrize("integrator", ["implicit_midpoint", "newmark", "verlet"])
-@pytest.mark.parametrize("kind", ["rigid", "hinge"])
+@pytest.mark.parametrize("kind", ["rigid", "hinge", "tied"])
 def test_a_free_frame_keeps_its_momenta(integrator: str, kind: str) -> None:
     scene = free_frame(integrator, 0.002)
-    scene["joints"][0]["kind"] = kind
+    scene["joints"][0]["kind"] = "hinge" if kind == "tied" else kind
+    if kind == "tied":
+        scene["joints"] += [joint("a", at("arm0", "start")), joint("b", at("arm1", "end"))]
+        scene["springs"] = [
+            {"name": "tie", "between": ["a", "b"], "stiffness": 4, "rest_length": 0.3}
+        ]
     simulation = der.Simulation(der.Scenario.from_dict(scene))
     momentum, spin = simulation.momentum.copy(), simulation.angular_momentum.copy()
     energy = simulation.energies.total

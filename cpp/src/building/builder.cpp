@@ -26,6 +26,7 @@
 #include "der/scenario/load.hpp"
 #include "der/scenario/model_choice.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/supports/axial_spring.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/hinge.hpp"
 #include "der/supports/spatial_clamp.hpp"
@@ -353,6 +354,7 @@ Model build_model(const scenario::Scene& scene, LegOrder order) {
   for (const auto& joint : scene.joints) add_hinge(joint, model);
   number_controls(scene, model);
   for (const auto& joint : scene.joints) drive_hinge(joint, model);
+  for (const auto& spring : scene.springs) add_axial_spring(spring, scene, model);
   find_force_nodes(scene, model);
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     add_support(scene.supports[i], i, model);

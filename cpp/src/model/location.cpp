@@ -131,6 +131,12 @@ std::vector<Index> nodes_at(const scenario::Location& location, const RodMesh& r
   return all;
 }
 
+Index node_of(const scenario::Joint& joint, const Model& model) {
+  const scenario::JointMember& member = joint.of.front();
+  const RodMesh& rod = model.rod(member.rod);
+  return rod.node(node_at(member.at, rod));
+}
+
 std::vector<Weighted> edge_weights(const RodMesh& rod, double s) {
   if (const auto beside = place_beside_clamp(rod, s)) return {{beside->edge, beside->share()}};
   const Index edges = rod.num_edges();

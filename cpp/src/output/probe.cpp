@@ -13,6 +13,7 @@
 #include "der/output/reactions.hpp"
 #include "der/scenario/find_support.hpp"
 #include "der/scenario/scenario.hpp"
+#include "output/axial_spring_reader.hpp"
 #include "output/energy_reader.hpp"
 #include "output/joint_reader.hpp"
 #include "output/rod_field.hpp"
@@ -310,6 +311,9 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
   }
   if (quantity.kind == QuantityKind::Joint) {
     return make_joint_reader(probe, quantity, scene, model);
+  }
+  if (quantity.kind == QuantityKind::Spring) {
+    return make_axial_spring_reader(quantity.read_spring, probe.spring.value(), scene, model);
   }
   const RodMesh& rod = model.rod(probe.rod.value());
   if (quantity.kind == QuantityKind::Ring) {

@@ -285,6 +285,23 @@ std::vector<Quantity> quantities_of_joints() {
   };
 }
 
+Quantity of_spring(SpringReading read, std::string name, std::string unit, std::string meaning) {
+  Quantity quantity{std::move(name),    std::move(unit), QuantityKind::Spring,
+                    std::move(meaning), nullptr,         {}};
+  quantity.read_spring = read;
+  return quantity;
+}
+
+std::vector<Quantity> quantities_of_springs() {
+  return {
+      of_spring([](double length, double /*tension*/) { return length; }, "spring_length", "m",
+                "length of a spring between joints"),
+      of_spring([](double /*length*/, double tension) { return tension; }, "spring_force", "N",
+                "force with which a spring between joints pulls them towards one another, that of "
+                "its damper included"),
+  };
+}
+
 /// Each term by itself, what is stored elastically, and all together.
 std::vector<Quantity> energy_quantities() {
   std::vector<Quantity> rows;
@@ -307,6 +324,7 @@ std::vector<Quantity> all_quantities() {
   for (Quantity& row : quantities_of_supports()) rows.push_back(std::move(row));
   for (Quantity& row : quantities_of_actuations()) rows.push_back(std::move(row));
   for (Quantity& row : quantities_of_joints()) rows.push_back(std::move(row));
+  for (Quantity& row : quantities_of_springs()) rows.push_back(std::move(row));
   for (Quantity& row : energy_quantities()) rows.push_back(std::move(row));
   return rows;
 }

@@ -43,6 +43,7 @@ class Names {
 void check_names(CheckContext& context) {
   Names names(context.diagnostics);
   names.enter("joints", context.scene.joints);
+  names.enter("springs", context.scene.springs);
   names.enter("supports", context.scene.supports);
   names.enter("loads", context.scene.loads);
   names.enter("actuation", context.scene.actuations);

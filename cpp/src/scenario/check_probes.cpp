@@ -58,10 +58,17 @@ class ProbeCheck {
       check_actuation(quantity.actuates);
     } else if (kind == QuantityKind::Joint) {
       check_joint(quantity.of_joint);
+    } else if (kind == QuantityKind::Spring) {
+      check_spring();
     } else if (probe_.leg) {
       report(path_ / "leg", fmt::format("'{}' is of a joint or a rod and has no 'leg': those that "
                                         "do are force_x, force_y and moment_z",
                                         probe_.quantity));
+    } else if (probe_.spring) {
+      report(
+          path_ / "spring",
+          fmt::format("'{}' is no quantity of a spring: those are spring_length and spring_force",
+                      probe_.quantity));
     } else if (probe_.support || probe_.actuation) {
       const bool of_support = probe_.support.has_value();
       report(path_ / (of_support ? "support" : "actuation"),
@@ -145,6 +152,19 @@ class ProbeCheck {
     }
   }
 
+  void check_spring() {
+    if (!probe_.spring) {
+      report(path_,
+             fmt::format("'{}' belongs to a spring between joints: give 'spring', its name{}",
+                         probe_.quantity, in_place_of()));
+      return;
+    }
+    if (has_place("joints") || context_.diagnostics.under({"springs"})) return;
+    const auto& all = context_.scene.springs;
+    if (find_by_name(all, *probe_.spring)) return;
+    report(path_ / "spring", none_of_that_name("spring", all, *probe_.spring));
+  }
+
   /// `key` is that of the actuations that have the quantity.
   void check_actuation(const std::string& key) {
     if (!probe_.actuation) {
@@ -172,6 +192,8 @@ class ProbeCheck {
     return probe_.rod         ? " in place of 'rod'"
            : probe_.support   ? " in place of 'support'"
            : probe_.actuation ? " in place of 'actuation'"
+           : probe_.joint     ? " in place of 'joint'"
+           : probe_.spring    ? " in place of 'spring'"
                               : "";
   }
 

@@ -24,12 +24,6 @@ std::vector<Hold> held_by(const Support& support) {
   return held;
 }
 
-void check_constant(CheckContext& context, bool constant, const Path& path) {
-  if (constant || context.scene.is_dynamic()) return;
-  context.diagnostics.add(path,
-                          "a static analysis has no time: give a constant in place of a table");
-}
-
 /// A run over time begins with the initial shape, where every prescribed motion is 0.
 void check_start(CheckContext& context, const Series& motion, const Path& path) {
   if (!context.scene.is_dynamic() || !context.scene.start_from.empty()) return;
@@ -159,6 +153,12 @@ void check_spring(CheckContext& context, int number) {
 }
 
 }  // namespace
+
+void check_constant(CheckContext& context, bool constant, const Path& path) {
+  if (constant || context.scene.is_dynamic()) return;
+  context.diagnostics.add(path,
+                          "a static analysis has no time: give a constant in place of a table");
+}
 
 void check_motion(CheckContext& context, const Series& motion, const Path& path) {
   check_constant(context, motion.constant(), path);

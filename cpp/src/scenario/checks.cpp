@@ -155,6 +155,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   check_rods(context);
   place_leg_ends(context);
   check_joints(context);
+  check_axial_springs(context);
   check_supports(context);
   if (diagnostics.size() == 0) {
     context.dimension = choose_model(scene).kind == ModelChoice::Planar ? 2 : 3;

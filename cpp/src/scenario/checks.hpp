@@ -91,6 +91,10 @@ void count_along_edges(CheckContext& context);
 const Joint* find_joint(CheckContext& context, const std::string& name, const Path& path);
 /// That the rods of each joint meet, and that this version has all that a scene with joints needs.
 void check_joints(CheckContext& context);
+/// That springs between joints have two, and a direction.
+void check_axial_springs(CheckContext& context);
+/// Reports a table in statics.
+void check_constant(CheckContext& context, bool constant, const Path& path);
 /// Reports a prescribed motion that has a table in statics, or that begins a run with a jump.
 void check_motion(CheckContext& context, const Series& motion, const Path& path);
 /// All but the springs, which depend on what other supports hold.

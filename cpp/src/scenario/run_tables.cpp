@@ -70,6 +70,8 @@ Table<ProbeText> probe_table() {
                 "In place of `rod` and `at`: a joint, for its position, velocity and rotation.")
       .optional("leg", &Probe::leg, name(),
                 "With `joint`, for forces and moments: the rod that exerts them on the joint.")
+      .optional("spring", &Probe::spring, name(),
+                "In place of `rod`: a spring between joints, for its length and force.")
       .optional("actuation", &Probe::actuation, name(),
                 "In place of `rod`, for what an actuation exerts: its name.")
       .optional("reduce", &Probe::over,
@@ -84,7 +86,7 @@ Table<ProbeText> probe_table() {
                 "and tension at a force, support or sphere, all of these, slope and tangent at a "
                 "corner; without it, after the place.")
       .at_most_one({{"at"}, {"over", "reduce"}})
-      .at_most_one({{"rod"}, {"support"}, {"actuation"}, {"joint"}});
+      .at_most_one({{"rod"}, {"support"}, {"actuation"}, {"joint"}, {"spring"}});
 }
 
 /// A mapping from free names to probes.
@@ -212,6 +214,8 @@ const Format<SceneText>& scene_format() {
           .required("rods", &SceneText::given_rods, list_of(rod_format(), 1), "The rods.")
           .optional("joints", &Scene::joints, list_of(joint_format(), 0),
                     "Joints between rods. Nothing else joins rods that touch.")
+          .optional("springs", &Scene::springs, list_of(axial_spring_format(), 0),
+                    "Springs between joints.")
           .optional("supports", &Scene::supports, list_of(support_format(), 0),
                     "Supports that hold or move the rods.")
           .optional("loads", &Scene::loads, list_of(load_format(), 0), "Loads on the rods.")

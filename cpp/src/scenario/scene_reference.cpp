@@ -102,7 +102,7 @@ struct Example {
   std::string_view table;
   std::string_view lines;
 };
-constexpr std::array<Example, 37> kExamples{{
+constexpr std::array<Example, 38> kExamples{{
     {"rod", R"(rods:
   - {name: rod, nodes: 21, from: [0, 0], to: [1, 0],
      cross_section: {circle: {radius: 5 mm}},
@@ -168,6 +168,19 @@ joints:
   - {name: corner, of: [{rod: beam, at: end}, {rod: post, at: start}]}
 supports:
   - {rod: post, at: end, clamp: true})"},
+    {"spring between joints", R"(rods:
+  - {name: mast, nodes: 11, from: [0, 0], to: [0, 1], cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}}
+  - {name: anchor, nodes: 3, from: [-1, 0], to: [-1.1, 0], cross_section: {circle: {radius: 5 mm}},
+     material: {youngs_modulus: 70 GPa, density: 2700}}
+joints:
+  - {name: top, of: [{rod: mast, at: end}]}
+  - {name: foot, of: [{rod: anchor, at: start}]}
+springs:
+  - {name: guy, between: [top, foot], stiffness: 5000}
+supports:
+  - {rod: mast, at: start, clamp: true}
+  - {rod: anchor, at: start, clamp: true})"},
     {"motion of a hinge", R"(rods:
   - {name: beam, nodes: 11, from: [0, 0], to: [1, 0], cross_section: {circle: {radius: 5 mm}},
      material: {youngs_modulus: 70 GPa, density: 2700}}

@@ -84,6 +84,7 @@ struct SceneText : Scene {
 
 Format<RodText> rod_format();
 Format<Joint> joint_format();
+Format<AxialSpring> axial_spring_format();
 Format<Support> support_format();
 /// A part of a rod without `to` reaches to infinity until the checks know the rod, as the stretch
 /// of an actuation does.

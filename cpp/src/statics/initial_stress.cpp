@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "der/energies/arc_stretch.hpp"
+#include "der/energies/axial_spring.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
@@ -211,9 +212,11 @@ InitialStress::InitialStress(const Model& model, const Configuration& here,
                              const Vector& displacement) {
   if (model.dimension == 2) {
     add_planar_edges(model, here, displacement);
+    add_axial_springs<2>(model, here, displacement);
     return;
   }
   add_spatial_edges(model, here, displacement);
+  add_axial_springs<3>(model, here, displacement);
   add_vertices<AngleCurvature>(model, here, displacement);
   add_vertices<TangentCurvature>(model, here, displacement);
   add_springs<1>(model, here, displacement);
@@ -225,16 +228,37 @@ void InitialStress::add_edge(const std::array<Index, std::size_t{2} * Dim>& dofs
                              const Eigen::Matrix<double, Dim, 1>& edge,
                              const Eigen::Matrix<double, Dim, 1>& change, double EA,
                              double rest_length) {
-  const double length = edge.norm();
-  const double strain = edge.dot(change) / (length * rest_length);
-  const double tension = EA * strain;
-  rotation_ = std::max(rotation_, turned_by(edge, change));
+  const double strain = edge.dot(change) / (edge.norm() * rest_length);
   strain_ = std::max(strain_, std::abs(strain));
+  add_tension(dofs, edge, change, EA * strain);
+}
+
+template <int Dim>
+void InitialStress::add_tension(const std::array<Index, std::size_t{2} * Dim>& dofs,
+                                const Eigen::Matrix<double, Dim, 1>& edge,
+                                const Eigen::Matrix<double, Dim, 1>& change, double tension) {
+  rotation_ = std::max(rotation_, turned_by(edge, change));
   largest_ = std::max(largest_, std::abs(tension));
   Term& term = terms_.emplace_back();
   term.size = Dim;
   for (std::size_t c = 0; c < Dim; ++c) term.variables[c] = {dofs[Dim + c], dofs[c]};
-  term.matrix = across(edge, tension / length);
+  term.matrix = across(edge, tension / edge.norm());
+}
+
+/// What their stiffness across them changes by. One of rest length 0 has the same everywhere.
+template <int Dim>
+void InitialStress::add_axial_springs(const Model& model, const Configuration& here,
+                                      const Vector& displacement) {
+  const auto& springs = elements_of<AxialSpring<Dim>>(*model.elements);
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    const auto& c = springs.constants[i];
+    const auto edge = AxialSpring<Dim>::vector(gather(springs.dofs[i], here.coordinates)).eval();
+    if (here.controls[c.rest_length] == 0.0) continue;
+    const auto change = AxialSpring<Dim>::vector(gather(springs.dofs[i], displacement)).eval();
+    add_tension<Dim>(
+        springs.dofs[i], edge, change,
+        c.stiffness * here.controls[c.rest_length] * edge.dot(change) / edge.squaredNorm());
+  }
 }
 
 void InitialStress::add_planar_edges(const Model& model, const Configuration& here,

@@ -83,6 +83,11 @@ std::vector<Table> tables(const scenario::Scene& scene) {
     const scenario::Series& angle = joint.prescribe->angle;
     found.push_back({path_of_angle(joint), angle.times, angle.course});
   }
+  for (const scenario::AxialSpring& spring : scene.springs) {
+    if (!spring.rest_length) continue;
+    found.push_back({fmt::format("springs.{}.rest_length", spring.name), spring.rest_length->times,
+                     spring.rest_length->course});
+  }
   return found;
 }
 

@@ -13,7 +13,8 @@ StepCommit::StepCommit(const Model& model, HeldVelocities held, LaggingRotations
       held_velocities_(held),
       rotations_(model),
       advances_rotations_(lagging == LaggingRotations::OfCommit && rotations_.any_lags()),
-      controls_work_(any_clamp_turns(model) || model.natural_strain.is_actuated()),
+      controls_work_(any_clamp_turns(model) || !model.rest_lengths.empty() ||
+                     model.natural_strain.is_actuated()),
       start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       end_(start_),
       ahead_(start_),

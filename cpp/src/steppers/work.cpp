@@ -1,5 +1,6 @@
 #include "der/steppers/work.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -191,6 +192,13 @@ double work_at_turned_clamps(const Model& model, const Configuration& before,
   return work;
 }
 
+bool any_rest_length_changes(const Model& model, const Configuration& before,
+                             const Configuration& after) {
+  return std::any_of(
+      model.rest_lengths.begin(), model.rest_lengths.end(),
+      [&](Index control) { return before.controls[control] != after.controls[control]; });
+}
+
 }  // namespace
 
 void stage_displacement(const Model& model, const Vector& start, const Vector& end, double share,
@@ -222,12 +230,13 @@ double moment_work(const Model& model, const Configuration& here, const Vector& 
 ControlWork control_work(const Model& model, const Configuration& before,
                          const Configuration& after) {
   const bool turns = any_clamp_turns(model);
+  const bool is_driven = turns || any_rest_length_changes(model, before, after);
   const double at_clamps = turns ? work_at_turned_clamps(model, before, after) : 0.0;
   if (!model.natural_strain.is_actuated()) {
-    return {turns ? energy_given(model, before, after) - at_clamps : 0.0, 0.0, at_clamps};
+    return {is_driven ? energy_given(model, before, after) - at_clamps : 0.0, 0.0, at_clamps};
   }
   const double loads = work_on_actuated_turns(model, before, after);
-  if (!turns) return {0.0, energy_given(model, before, after) - loads, loads};
+  if (!is_driven) return {0.0, energy_given(model, before, after) - loads, loads};
   // Each of the two changes first, and after the other.
   Configuration turned = after;
   model.natural_strain.copy(before.controls, turned.controls);

@@ -12,6 +12,8 @@ from der._core import Scenario
 from der.scene_loads import kind_of
 from der.simulation import Simulation
 
+#: Lists of the scene whose parts have names that programs set.
+_NAMED = ("joints", "springs", "supports", "loads", "actuation")
 #: Kinds of loads with a value that can be set.
 _SETTABLE = ("point_force", "distributed_force", "moment", "gravity")
 #: Keys whose numbers are no values.
@@ -20,10 +22,11 @@ _NO_VALUES = frozenset(("at", "from", "to", "axis", "times", "frequency", "phase
 
 @dataclass(frozen=True)
 class Control:
-    """A value that can be set, with its unit; `reach` and `step` are of its slider, about 0."""
+    """A value that can be set, with its unit; its slider goes from `least` to `reach` in steps."""
 
     path: str
     unit: str
+    least: float
     reach: float
     step: float
 
@@ -31,9 +34,7 @@ class Control:
 def with_names(scenario: Scenario) -> Scenario:
     """Return the scene with names for all that a program can set: ``gravity``, ``gravity_2``."""
     scene = scenario.to_dict()
-    parts = [
-        (key, part) for key in ("supports", "loads", "actuation") for part in scene.get(key) or []
-    ]
+    parts = [(key, part) for key in _NAMED for part in scene.get(key) or []]
     taken = {part.get("name") for _, part in parts}
     names = {}
     for key in ("supports", "loads"):
@@ -50,17 +51,21 @@ def with_names(scenario: Scenario) -> Scenario:
 def controls_of(simulation: Simulation) -> list[Control]:
     """Return what can be set, with sliders twice as long as what the scene does by itself."""
     scene = simulation.scenario.to_dict()
-    lists = (scene.get(key) or [] for key in ("supports", "loads", "actuation"))
+    lists = (scene.get(key) or [] for key in _NAMED)
     parts = {part.get("name"): part for items in lists for part in items}
     found = []
     for name, components in simulation.names.items():
         moved = parts[name].get("prescribe", parts[name])
         for component, unit in components.items():
-            part = moved.get(component, moved.get("rotation", moved))
+            is_length = component == "rest_length"
+            part = moved.get(component, {} if is_length else moved.get("rotation", moved))
             reach = 2.0 * _largest(part) or _natural_reach(simulation, unit)
+            if is_length:
+                reach = max(reach, 2.0 * simulation.value(f"{name}.{component}"))
             step = float(f"{10.0 ** np.floor(np.log10(reach / 100.0)):.0e}")
             reach = float(f"{step * np.ceil(reach / step - 1e-9):.12g}")
-            found.append(Control(f"{name}.{component}", unit, reach, step))
+            least = 0.0 if is_length else -reach
+            found.append(Control(f"{name}.{component}", unit, least, reach, step))
     return found
 
 

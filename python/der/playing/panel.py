@@ -39,8 +39,8 @@ class Panel:
         self._untouched = set(player.controls)
         for control in player.controls:
             label = control.path.replace(".", " ") + (f" [{control.unit}]" if control.unit else "")
-            reach, step = control.reach, control.step
-            self._sliders[control] = slider = gui.add_slider(label, -reach, reach, step, 0.0)
+            least, reach, step = control.least, control.reach, control.step
+            self._sliders[control] = slider = gui.add_slider(label, least, reach, step, 0.0)
             _on(slider.on_update, put, partial(self._set, control))
         self._values = gui.add_markdown("")
         gui.add_markdown(note)
@@ -61,8 +61,7 @@ class Panel:
         self._status.content = state
         self._pause.label = "Play" if player.paused else "Pause"
         for control in self._untouched:
-            reach = control.reach
-            value = min(max(player.value(control), -reach), reach)
+            value = min(max(player.value(control), control.least), control.reach)
             # What is set anew takes what a visitor is about to type.
             if self._sliders[control].value != value:
                 self._sliders[control].value = value
@@ -78,7 +77,7 @@ class Panel:
     def _set(self, control: Control, value: float) -> None:
         self._untouched.discard(control)
         # While a visitor types into its box, a slider also gives what is beyond its ends.
-        self._player.set(control, min(max(value, -control.reach), control.reach))
+        self._player.set(control, min(max(value, control.least), control.reach))
 
     def _reset(self) -> None:
         self._player.reset()

@@ -9,13 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import hinges, springs
+from der._core import axial_springs, hinges, springs
 from der.actuated_stretches import ActuatedStretch, actuated_stretches
 from der.plotting.actuation import draw_actuation
 from der.plotting.lengths import label_positions
 from der.plotting.loads import add_gravity_to_legend, draw_loads, room_for_loads
 from der.plotting.shapes import Shape, draw_shapes, limits
-from der.plotting.supports import draw_hinges, draw_springs, draw_supports
+from der.plotting.supports import (
+    draw_axial_springs,
+    draw_hinges,
+    draw_springs,
+    draw_supports,
+)
 from der.scene_loads import ActingLoads, acting_loads
 from der.sections import directors_along
 
@@ -59,6 +64,10 @@ class Picture:
         return directors_along(self.result)
 
     @cached_property
+    def _axial_springs(self) -> list[list[int]]:
+        return axial_springs(self.result.scenario)
+
+    @cached_property
     def _hinges(self) -> list[int]:
         return hinges(self.result.scenario)
 
@@ -99,6 +108,7 @@ class Picture:
         draw_actuation(axes, self.rods, self.actuated, at.frame, at.positions)
         draw_supports(axes, self.rods, self.result.held_nodes(at.frame), at.positions)
         draw_springs(axes, self.rods, springs(self.result.scenario), at.positions)
+        draw_axial_springs(axes, (at.positions[ends] for ends in self._axial_springs))
         if self._hinges:
             draw_hinges(axes, at.positions[self._hinges])
         draw_loads(axes, self.rods, loads, at.positions)

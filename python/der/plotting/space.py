@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.typing import ColorType
 from numpy.typing import NDArray
 
-from der._core import HeldNode, Rod, SpringSupport, springs
+from der._core import HeldNode, Rod, SpringSupport, axial_springs, springs
 from der.actuated_stretches import ActuatedStretch
 from der.film import mode_displacements
 from der.plotting.camera import along_axes, perspective
@@ -206,6 +206,7 @@ class SpatialPicture(Picture):
             *(self._sleeve(n, one, at) for n, one in enumerate(self.actuated)),
             *(part for node in held for part in self._support(node, by_name[node.rod], at)),
             *(part for one in springs(self.result.scenario) for part in self._spring(one, at)),
+            *(self._coil(*at.positions[ends]) for ends in axial_springs(self.result.scenario)),
             *self._load_solids(by_name, loads, at.positions),
         ]
         return Faces.joined(parts)
@@ -266,7 +267,7 @@ class SpatialPicture(Picture):
         place = spring.weights @ at.positions[spring.nodes]
         for axis, stiffness in zip(np.eye(3), spring.stiffness, strict=False):
             if stiffness > 0.0:
-                yield from self._coil(place, -axis, _COIL * self.size)
+                yield from self._to_ground(place, -axis, _COIL * self.size)
         if spring.rotational_stiffness > 0.0:
             angles = np.linspace(0.0, 5.0 * np.pi, 60)
             radii = 0.4 * _COIL * self.size * angles / angles[-1]
@@ -276,20 +277,26 @@ class SpatialPicture(Picture):
             )
             yield self._wire(line + 0.02 * self.size * towards, _GREY)
 
-    def _coil(self, place: Array, direction: Array, length: float) -> Iterator[Faces]:
+    def _to_ground(self, place: Array, direction: Array, length: float) -> Iterator[Faces]:
         """Return a spring from a place to the ground in a direction."""
+        yield self._coil(place, place + length * direction)
+        across = 0.3 * length * _across(direction)
+        plate = np.vstack([across[0], across[1], 0.03 * length * direction])
+        yield box(place + length * direction, plate, _GREY)
+
+    def _coil(self, start: Array, end: Array) -> Faces:
+        """Return a spring between two places."""
+        length = max(float(np.linalg.norm(end - start)), 1e-9 * self.size)
         share = np.linspace(0.0, 1.0, 49)
-        radius = 0.16 * length * np.sin(np.pi * np.clip(1.4 * np.minimum(share, 1 - share), 0, 0.5))
-        frame = _across(direction)
+        bulge = np.sin(np.pi * np.clip(1.4 * np.minimum(share, 1 - share), 0, 0.5))
+        radius = 0.16 * min(length, _COIL * self.size) * bulge
+        frame = _across((end - start) / length)
         turns = 2.0 * np.pi * 5.0 * share
-        line = place + share[:, None] * length * direction
+        line = start + share[:, None] * (end - start)
         line = line + radius[:, None] * (
             np.cos(turns)[:, None] * frame[0] + np.sin(turns)[:, None] * frame[1]
         )
-        yield self._wire(line, _GREY)
-        size = 0.3 * length
-        plate = np.vstack([size * frame[0], size * frame[1], 0.1 * size * direction])
-        yield box(place + length * direction, plate, _GREY)
+        return self._wire(line, _GREY)
 
     def _wire(self, line: Array, colour: ColorType) -> Faces:
         outline = _SHAFT * self.size * circle(8)
@@ -313,7 +320,7 @@ class SpatialPicture(Picture):
             count = max(2, round(_FOUNDATION_SPRINGS * (part.end - part.start) / rod.length))
             for at in np.linspace(part.start, part.end, count).tolist():
                 place = place_on(rod, positions, at)
-                yield from self._coil(place, ground, 0.7 * _COIL * self.size)
+                yield from self._to_ground(place, ground, 0.7 * _COIL * self.size)
         for moment in loads.moments:
             axis = moment.value / np.linalg.norm(moment.value)
             yield from self._arc(place_on(by_name[moment.rod], positions, moment.at), axis)

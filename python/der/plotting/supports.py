@@ -47,6 +47,9 @@ _ZIGZAG = [(0.3 * (-1) ** k, -0.45 - 0.2 * k) for k in range(5)]
 _SPRING = _strokes(
     [(0.0, 0.0), (0.0, -0.35), *_ZIGZAG, (0.0, -1.35), (0.0, -1.65)], *_hatching(-1.65)
 )
+#: Along a spring of length 1, and across it.
+_ZIGZAG_BETWEEN = np.pad([(0.325 + 0.05 * k, 0.04 * (-1) ** k) for k in range(8)], ((2, 2), (0, 0)))
+_ZIGZAG_BETWEEN[[0, 1, -2, -1], 0] = [0.0, 0.3, 0.7, 1.0]
 _FOUNDATION = _SPRING.transformed(Affine2D().scale(FOUNDATION_HEIGHT / (1.95 * _UNIT)))
 _TURNS = np.linspace(0.0, 4.5 * np.pi, 60)
 _SPIRAL = _strokes(
@@ -118,6 +121,21 @@ def draw_springs(
         for symbol, angle, stiffness in drawn:
             if stiffness > 0.0:
                 _draw_symbol(axes, symbol, angle, place, f"spring-{spring.rod}-{number}")
+
+
+def draw_axial_springs(axes: Axes, ends: Iterable[NDArray[np.float64]]) -> None:
+    """Draw a zigzag line for each spring between joints, whose ends [m] have the shape (2, 2)."""
+    for number, (start, end) in enumerate(ends):
+        along = end - start
+        places = start + _ZIGZAG_BETWEEN[:, :1] * along
+        across = np.array([-along[1], along[0]])
+        axes.plot(
+            *(places + _ZIGZAG_BETWEEN[:, 1:] * across).T,
+            color=MUTED,
+            linewidth=0.9,
+            zorder=1.5,
+            gid=f"axial-spring-{number}",
+        )
 
 
 def draw_hinges(axes: Axes, places: NDArray[np.float64]) -> None:

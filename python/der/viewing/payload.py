@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Rod, hinges, springs
+from der._core import Rod, axial_springs, hinges, springs
 from der.actuated_stretches import ActuatedStretch, actuated_stretches
 from der.characteristic_scales import characteristic_scale
 from der.fields import fields_of
@@ -50,7 +50,8 @@ def make_payload(result: RunData) -> dict[str, Any]:
     sections = sections_of(result)
     loads = _loads(result, film, frames)
     found_springs = _springs(result)
-    symbols = any(loads["loads"]) or bool(found_springs)
+    found_axial_springs = [_places(result, ends) for ends in axial_springs(result.scenario)]
+    symbols = any(loads["loads"]) or bool(found_springs) or bool(found_axial_springs)
     low, high, symbol = _limits(result.rods, sections, positions, scale.metres, symbols)
     span = 0.0 if film.times is None else float(film.times[-1] - film.times[0])
     notes = [failure_text(result), result.scenario.analysis if result.scenario.is_static else ""]
@@ -93,7 +94,8 @@ def make_payload(result: RunData) -> dict[str, Any]:
         ],
         "supports": _supports(result, film.source[frames]),
         "springs": found_springs,
-        "hinges": _hinges(result),
+        "axial_springs": found_axial_springs,
+        "hinges": _places(result, hinges(result.scenario)),
         **loads,
         "actuation": _actuation(result, film.source[frames]),
         "symbol": symbol,
@@ -312,14 +314,14 @@ def _load_symbols(result: RunData, loads: ActingLoads) -> list[dict[str, Any]]:
     return found
 
 
-def _hinges(result: RunData) -> list[dict[str, int]]:
-    """Return a rod and the place on it of each hinge."""
+def _places(result: RunData, nodes: list[int]) -> list[dict[str, int]]:
+    """Return a rod and the place on it of each node."""
     places = {
         int(node): {"rod": number, "place": place}
         for number, rod in enumerate(result.rods)
         for place, node in enumerate(rod.nodes)
     }
-    return [places[node] for node in hinges(result.scenario)]
+    return [places[node] for node in nodes]
 
 
 def _supports(result: RunData, source: NDArray[np.int64]) -> list[dict[str, Any]]:

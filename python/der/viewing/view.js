@@ -385,18 +385,24 @@
       for (const list of [path.x, path.y, path.z]) list.push(null); // the pen is lifted
     };
     const size = data.symbol;
-    const zigzag = (place, along, length) => {
-      const side = scale((length / 6) * size, across(along));
+    const zigzag = (from, to, width) => {
+      const vector = sub(to, from);
+      const side = scale(width * size, across(unit(vector, [0, 0, 1])));
       const shares = [0, 0, 1, -1, 1, -1, 1, -1, 0, 0];
-      const pitch = (length * size) / (shares.length - 1);
-      draw(shares.map((share, k) => add(place, add(scale(pitch * k, along), scale(share, side)))));
+      const along = (k) => add(from, scale(k / (shares.length - 1), vector));
+      draw(shares.map((share, k) => add(along(k), scale(share, side))));
     };
+    const toGround = (place, along, length) =>
+      zigzag(place, add(place, scale(length * size, along)), length / 6);
     for (const load of loadsAt(frame, isFoundation)) {
-      zigzag(loadPlace(load, lineOf(rods[load.rod], frame)), load.along, FOUNDATION);
+      toGround(loadPlace(load, lineOf(rods[load.rod], frame)), load.along, FOUNDATION);
+    }
+    for (const ends of data.axial_springs) {
+      zigzag(...ends.map((end) => lineOf(rods[end.rod], frame)[end.place]), SPRING / 6);
     }
     for (const spring of data.springs) {
       const place = springPlace(spring, frame);
-      for (const along of spring.along) zigzag(place, along, SPRING);
+      for (const along of spring.along) toGround(place, along, SPRING);
       if (spring.turns) {
         const turns = Array.from({ length: 49 }, (_, k) => k / 48);
         draw(

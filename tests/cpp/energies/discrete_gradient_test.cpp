@@ -229,6 +229,7 @@ TEST_CASE("a discrete gradient goes through a fold, where the turning angle jump
 
 TEST_CASE("discrete gradients of free elements add up to no force and no moment") {
   check_momenta<Stretch<2>>();
+  check_momenta<AxialSpring<2>>();
   check_momenta<PlanarBend<AngleCurvature>>();
   check_momenta<PlanarBend<TangentCurvature>>();
 }

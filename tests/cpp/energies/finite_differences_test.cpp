@@ -124,6 +124,7 @@ TEST_CASE("gradient and Hessian of every element agree with finite differences")
 
 TEST_CASE("rigid motions cost no energy and make no force") {
   for_each_shape(check_rigid_motion<Stretch<2>>);
+  for_each_shape(check_rigid_motion<AxialSpring<2>>);
   for_each_shape(check_rigid_motion<PlanarBend<AngleCurvature>>);
   for_each_shape(check_rigid_motion<PlanarBend<TangentCurvature>>);
 }

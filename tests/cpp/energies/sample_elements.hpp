@@ -25,6 +25,7 @@ enum Control : Index {
   kTurn,
   kElongation,
   kDriven,
+  kRestLength,
   kStrains,
   kJoints = kStrains + 3,  ///< blocks of two joints in space
   kNumControls = kJoints + 2 * JointBlock::kSize
@@ -48,6 +49,7 @@ inline Configuration sample_configuration(Random& random) {
   here.controls[kTurn] = uniform(random, -1.0, 1.0);
   here.controls[kElongation] = uniform(random, -0.1, 0.1);
   here.controls[kDriven] = 0.07;
+  here.controls[kRestLength] = uniform(random, 0.5, 2.0);
   for (Index i = kStrains; i < kJoints; ++i) here.controls[i] = uniform(random, -0.5, 0.5);
   return here;
 }
@@ -55,6 +57,11 @@ inline Configuration sample_configuration(Random& random) {
 template <int Dim>
 typename Stretch<Dim>::Constants sample_constants(const Stretch<Dim>&, Random& random) {
   return {uniform(random, 1.0, 100.0), uniform(random, 0.5, 2.0), {kElongation}};
+}
+
+template <int Dim>
+typename AxialSpring<Dim>::Constants sample_constants(const AxialSpring<Dim>&, Random& random) {
+  return {uniform(random, 1.0, 100.0), kRestLength};
 }
 
 template <class Curvature>

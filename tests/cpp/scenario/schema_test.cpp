@@ -25,9 +25,9 @@ TEST_CASE("schema: has the keys of the contract and no others") {
   CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
   CHECK(schema["additionalProperties"] == false);
   CHECK(schema["required"] == Json::array({"rods"}));
-  const std::set<std::string> keys{"title",    "model",      "rods",   "joints",
-                                   "supports", "loads",      "time",   "actuation",
-                                   "analysis", "start_from", "solver", "output"};
+  const std::set<std::string> keys{"title",      "model",  "rods",  "joints",    "springs",
+                                   "supports",   "loads",  "time",  "actuation", "analysis",
+                                   "start_from", "solver", "output"};
   std::set<std::string> found;
   for (const auto& [key, value] : schema["properties"].items()) found.insert(key);
   CHECK(found == keys);

@@ -299,6 +299,10 @@ def _joined(kind: str) -> Thing:
                 {"name": "hip", "of": hip, **kinds[kind]},
                 {"name": "ankle", "of": ankle},
             ],
+            "springs": [
+                {"name": "tendon", "between": ["hip", "ankle"], "stiffness": 3.0, "damping": 0.05},
+                {"name": "tie", "between": ["ankle", "hip"], "stiffness": 1.0, "rest_length": 0.3},
+            ],
             "supports": [
                 *CLAMP,
                 {**turnings[kind], "spring": {"rotational_stiffness": 0.8}},
@@ -317,6 +321,8 @@ def _joined(kind: str) -> Thing:
                     "own": probed,
                     "pull": {"quantity": "force_x", "joint": "ankle", "leg": "foot"},
                     "bend": {"quantity": "moment_z", "joint": "hip", "leg": "rod"},
+                    "length": {"quantity": "spring_length", "spring": "tie"},
+                    "tie": {"quantity": "spring_force", "spring": "tie"},
                 }
             },
         }
@@ -349,6 +355,9 @@ def _joined_in_space(kind: str) -> Thing:
                 {"name": "hip", "of": hip, "kind": kind},
                 {"name": "ankle", "of": ankle},
             ],
+            "springs": [
+                {"name": "tie", "between": ["ankle", "hip"], "stiffness": 1.0, "rest_length": 0.3}
+            ],
             "supports": [
                 *CLAMP,
                 {**turning, "spring": {"rotational_stiffness": [0.8, 0.8, 0.3]}},
@@ -367,6 +376,8 @@ def _joined_in_space(kind: str) -> Thing:
                     "own": {"quantity": "torque", "rod": "arm", "at": "end", "side": "before"},
                     "pull": {"quantity": "tension", "rod": "foot", "at": "start"},
                     "bend": {"quantity": "moment", "rod": "arm", "at": "start"},
+                    "length": {"quantity": "spring_length", "spring": "tie"},
+                    "tie": {"quantity": "spring_force", "spring": "tie"},
                 }
             },
         }

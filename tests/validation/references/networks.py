@@ -18,8 +18,8 @@ Vibrations about an equilibrium: the load of inertia m omega^2 times the displac
 derivatives alone, and a natural frequency makes them singular.
 
 A scene is read as far as it has straight rods with their stiffnesses, joints, hinges of two rods
-with springs and moments between these, supports (components, clamps, constant motions, springs),
-dead loads and follower forces. Nothing is shared with `der`.
+with springs and moments between these, springs between joints, supports (components, clamps,
+constant motions, springs), dead loads and follower forces. Nothing is shared with `der`.
 """
 
 from __future__ import annotations
@@ -91,6 +91,27 @@ class _Hinge:
     moment: float = 0.0
 
 
+@dataclass
+class _AxialSpring:
+    """A spring along the line between two joints."""
+
+    joints: tuple[int, int]
+    stiffness: float
+    drawn: float
+    rest_length: float
+
+    def pull(self, places: Array, level: float) -> tuple[Array, Array]:
+        """The force on the first joint, and its derivative by the vector to the second."""
+        vector = places[self.joints[1]] - places[self.joints[0]]
+        length = float(np.hypot(*vector))
+        rest = self.drawn + level * (self.rest_length - self.drawn)
+        tangent = vector / length
+        along = np.outer(tangent, tangent)
+        across = self.stiffness * (1 - rest / length)
+        stiffness: Array = self.stiffness * along + across * (np.eye(2) - along)
+        return across * vector, stiffness
+
+
 def _pair(value: Any) -> Array:
     return np.full(2, value, dtype=float)
 
@@ -104,6 +125,7 @@ class Network:
         self.joints: list[_Joint] = []
         self.rotations: list[_Rotation] = []
         self.hinges: dict[str, _Hinge] = {}
+        self.springs: dict[str, _AxialSpring] = {}
         self.pieces: list[_Piece] = []
         self._joint_at: dict[Key, int] = {}
         self._rotation_at: dict[Key, int] = {}
@@ -152,6 +174,14 @@ class Network:
                 first, second = (self._rotation_at[self.key(member)] for member in joint["of"])
                 spring = joint.get("spring", {}).get("rotational_stiffness", 0.0)
                 self.hinges[joint["name"]] = _Hinge((first, second), spring)
+        of = {joint["name"]: self._joint_at[self.key(joint["of"][0])] for joint in joints}
+        for spring in scene.get("springs", []):
+            first, second = (of[name] for name in spring["between"])
+            drawn = float(np.hypot(*(self.joints[second].place - self.joints[first].place)))
+            rest = spring.get("rest_length", drawn)
+            self.springs[spring["name"]] = _AxialSpring(
+                (first, second), spring["stiffness"], drawn, rest
+            )
         for name, rod in self.rods.items():
             cuts = sorted(share for owner, share in keys if owner == name)
             section = rod["cross_section"]["stiffness"]
@@ -313,6 +343,16 @@ class Network:
                 residual[2 * J + side] += sign * on_second
                 matrix[2 * J + side, 2 * J + second] -= sign * hinge.spring
                 matrix[2 * J + side, 2 * J + first] += sign * hinge.spring
+        for spring in self.springs.values():
+            pull, slope_of_pull = spring.pull(places, level)
+            ends = 2 * np.array(spring.joints)
+            for own, sign in zip(ends, (1.0, -1.0), strict=True):
+                for c in range(2):
+                    if self.joints[own // 2].held[c]:
+                        continue
+                    residual[own + c] += sign * pull[c]
+                    matrix[own + c, ends[0] : ends[0] + 2] -= sign * slope_of_pull[c]
+                    matrix[own + c, ends[1] : ends[1] + 2] += sign * slope_of_pull[c]
         for k, piece in enumerate(self.pieces):
             a, b = piece.joints
             ra, rb = 2 * J + piece.rotations[0], 2 * J + piece.rotations[1]
@@ -391,6 +431,13 @@ class Network:
         s = self.key({"rod": rod, "at": at})[1] * self.length(rod)
         return float(self.along(quantity, rod, np.array([s]), side)[0])
 
+    def spring(self, name: str) -> tuple[float, float]:
+        """Length and force of a spring between joints."""
+        spring = self.springs[name]
+        places = self._unpack(self.w)[0]
+        length = float(np.hypot(*(places[spring.joints[1]] - places[spring.joints[0]])))
+        return length, spring.stiffness * (length - spring.rest_length)
+
     def reaction(self, support: int) -> Array:
         """Force and moment that a support exerts, where it is the only one at its place."""
         key = self.supports[support]
@@ -408,6 +455,11 @@ class Network:
                 total[2] += forces[k, 2]
             if piece.rotations[1] == group:
                 total[2] -= ends[5, k].real
+        for spring in self.springs.values():
+            pull = spring.pull(places, 1.0)[0]
+            for joint_there, sign in zip(spring.joints, (1.0, -1.0), strict=True):
+                if joint_there == number:
+                    total[:2] += sign * pull
         exerted = np.zeros(3)
         for c in range(2):
             moved = places[number, c] - joint.place[c]

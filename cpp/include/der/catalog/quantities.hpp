@@ -30,6 +30,7 @@ enum class QuantityKind {
   Support,    ///< of a support: no place but that of the support
   Actuation,  ///< of an actuation: no place but its stretch
   Joint,      ///< of a joint: no place but that of the joint
+  Spring,     ///< of a spring between joints
   Energy,     ///< of a rod or of the whole model: no place
 };
 
@@ -76,6 +77,9 @@ enum class JointQuantity {
   MomentZ
 };
 
+/// Reads a quantity of a spring between joints off its length [m] and its tension [N].
+using SpringReading = double (*)(double length, double tension);
+
 /// Whether it is of the joint as a whole, not of a rod's part in it.
 constexpr bool is_rotation(JointQuantity quantity) {
   return quantity == JointQuantity::Rotation || quantity == JointQuantity::RotationX ||
@@ -100,6 +104,7 @@ struct Quantity {
   ReactionReading read_reaction = nullptr;  ///< of supports
   ActuationReading read_actuation = nullptr;
   JointQuantity of_joint = JointQuantity::None;
+  SpringReading read_spring = nullptr;
   std::string actuates{};  ///< of actuations: the key of those that have the quantity
   std::string advice{};    ///< what to take in its place in a model that lacks it; may be empty
 };

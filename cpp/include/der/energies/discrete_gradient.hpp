@@ -5,6 +5,7 @@
 #include "der/core/constants.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/arc_stretch.hpp"
+#include "der/energies/axial_spring.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/local_term.hpp"
@@ -127,6 +128,18 @@ void discrete_gradient(KernelTag<Stretch<Dim>> /*kernel*/,
       c.EA / c.rest_length * (lengths - 2.0 * natural) / lengths * 0.5 * (before + after);
   gradient.template head<Dim>() = -force;
   gradient.template tail<Dim>() = force;
+}
+
+template <int Dim>
+void discrete_gradient(KernelTag<AxialSpring<Dim>> /*kernel*/,
+                       const typename AxialSpring<Dim>::Constants& c, const Configuration& here,
+                       const Local<2 * Dim>& start, const Local<2 * Dim>& end,
+                       Local<2 * Dim>& gradient) {
+  const auto before = AxialSpring<Dim>::vector(start);
+  const auto after = AxialSpring<Dim>::vector(end);
+  const double mean_length = 0.5 * (before.norm() + after.norm());
+  const auto force = (c.across(here.controls, mean_length) * 0.5 * (before + after)).eval();
+  gradient << -force, force;
 }
 
 /// By the length of the edge and the turning angles, of which the energy is a polynomial: the mean

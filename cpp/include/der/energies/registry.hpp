@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "der/energies/arc_stretch.hpp"
+#include "der/energies/axial_spring.hpp"
 #include "der/energies/circulatory_load.hpp"
 #include "der/energies/corner_fork.hpp"
 #include "der/energies/element_list.hpp"
@@ -78,6 +79,8 @@ struct ElementLists {
       ElementList<FromPivot<PlanarMoment>>,                             //
       ElementList<Foundation<2>>,                                       //
       ElementList<Foundation<3>>,                                       //
+      ElementList<AxialSpring<2>>,                                      //
+      ElementList<AxialSpring<3>>,                                      //
       ElementList<PointSpring<2, 1>>,                                   //
       ElementList<PointSpring<2, 2>>,                                   //
       ElementList<PointSpring<2, 3>>,                                   //

@@ -4,6 +4,7 @@
 
 #include "der/core/types.hpp"
 #include "der/energies/arc_stretch.hpp"
+#include "der/energies/axial_spring.hpp"
 #include "der/energies/damping_times.hpp"
 #include "der/energies/end_cell.hpp"
 #include "der/energies/from_pivot.hpp"
@@ -158,6 +159,25 @@ struct StrainRate<JointSpring<2>> : StrainRateBase<JointSpring<2>, 1> {
   }
   /// The viscosity of a hinge with a damping [N m s].
   static Mat3 of_hinge(double damping) { return single(damping); }
+};
+
+/// The rate is that of the length; the damping is not that of a material.
+template <int Dim>
+struct StrainRate<AxialSpring<Dim>> : StrainRateBase<AxialSpring<Dim>, 1> {
+  using Base = StrainRateBase<AxialSpring<Dim>, 1>;
+  static Mat3 viscosity(const typename Base::Constants& c, const DampingTimes& times) {
+    return Base::single(times.stretching * c.stiffness);
+  }
+  static typename Base::Gradient gradient(const typename Base::Constants& /*c*/,
+                                          const Configuration& /*here*/,
+                                          const typename Base::Local& x) {
+    const auto tangent = AxialSpring<Dim>::vector(x).normalized().eval();
+    typename Base::Gradient result;
+    result << -tangent.transpose(), tangent.transpose();
+    return result;
+  }
+  /// The viscosity of a spring with a damping [N s/m].
+  static Mat3 of_spring(double damping) { return Base::single(damping); }
 };
 
 /// The strains are the extension of the arc and, with a negative viscosity, that of the edge, whose

@@ -6,6 +6,7 @@
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/node_weights.hpp"
+#include "der/scenario/joint.hpp"
 #include "der/scenario/location.hpp"
 
 namespace der {
@@ -61,6 +62,9 @@ std::vector<double> arc_lengths_of(const scenario::Location& location, const Rod
 Index node_at(const scenario::Location& location, const RodMesh& rod);
 /// Positions in RodMesh::nodes of the nodes at `location`: every node for Kind::All, else one.
 std::vector<Index> nodes_at(const scenario::Location& location, const RodMesh& rod);
+
+/// The node at which the rods of a joint meet.
+Index node_of(const scenario::Joint& joint, const Model& model);
 
 /// Weights of the edges whose direction angles, linearly interpolated between the places where the
 /// tangent has them, give the direction at arc length `s`. Beside a clamp they add up to less than

@@ -289,6 +289,7 @@ struct Model {
   Vector damping;       ///< [N s/m], one entry a degree of freedom: drag and linear damping
   bool damped = false;  ///< whether any of that is there
   std::vector<Index> driven_hinges;  ///< the controls of their angles [rad]
+  std::vector<Index> rest_lengths;   ///< the controls of those of springs between joints [m]
   bool viscous = false;              ///< whether any rod has internal damping (ElementList::damped)
   Vector gravity_force;              ///< [N] constant weight without buoyancy
   /// Controls of the acceleration of gravity [m/s^2], where it follows any; its weight is then

@@ -15,10 +15,11 @@ enum class Reduce { None, Min, Max };
 enum class Side { Before, After };
 struct Probe {
   std::string name;
-  std::string quantity;              ///< a name of the probe registry (x, vy, turning_angle, ...)
-  std::optional<std::string> rod;    ///< absent: the whole model (energies only)
-  std::optional<std::string> joint;  ///< in place of the rod and the place
-  std::optional<std::string> leg;    ///< the rod whose force or moment on the joint it is
+  std::string quantity;               ///< a name of the probe registry (x, vy, turning_angle, ...)
+  std::optional<std::string> rod;     ///< absent: the whole model (energies only)
+  std::optional<std::string> joint;   ///< in place of the rod and the place
+  std::optional<std::string> leg;     ///< the rod whose force or moment on the joint it is
+  std::optional<std::string> spring;  ///< name of the one between joints
   std::optional<Location> at;
   Reduce over = Reduce::None;            ///< with `over: rod`: the extreme along the rod
   std::optional<Side> side;              ///< absent: after; quantities that jump only

@@ -6,6 +6,7 @@
 
 #include "der/scenario/actuation.hpp"
 #include "der/scenario/analysis.hpp"
+#include "der/scenario/axial_spring.hpp"
 #include "der/scenario/joint.hpp"
 #include "der/scenario/output.hpp"
 #include "der/scenario/rod.hpp"
@@ -46,6 +47,7 @@ struct Scene {
   Analysis analysis = DynamicAnalysis{};
   std::vector<Rod> rods;
   std::vector<Joint> joints;
+  std::vector<AxialSpring> springs;
   std::vector<Support> supports;
   std::vector<Load> loads;
   std::vector<Actuation> actuations;

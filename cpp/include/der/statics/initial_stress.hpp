@@ -73,6 +73,13 @@ class InitialStress {
   void add_edge(const std::array<Index, std::size_t{2} * Dim>& dofs,
                 const Eigen::Matrix<double, Dim, 1>& edge,
                 const Eigen::Matrix<double, Dim, 1>& change, double EA, double rest_length);
+  /// The tension [N] that the change of an edge, or of a spring between joints, causes along it.
+  template <int Dim>
+  void add_tension(const std::array<Index, std::size_t{2} * Dim>& dofs,
+                   const Eigen::Matrix<double, Dim, 1>& edge,
+                   const Eigen::Matrix<double, Dim, 1>& change, double tension);
+  template <int Dim>
+  void add_axial_springs(const Model& model, const Configuration& here, const Vector& displacement);
   template <class Kernel>
   void add_arc(const std::array<Index, std::size_t{Kernel::kDofs}>& dofs,
                const typename Kernel::Constants& c, const Configuration& here,

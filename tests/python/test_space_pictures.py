@@ -386,6 +386,7 @@ def overlaps(figure):
 
 EXAMPLES = ("helix_spring", "twisted_ring", "spun_strip", "hanging_coil", "helical_buckling")
 EXAMPLES += ("bent_cantilever_45", "finger", "falling_beam_21", "lee_frame", "beam_on_foundation")
+EXAMPLES += ("gridshell", "sagging_net", "four_bar_finger", "gripper")
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

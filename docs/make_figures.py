@@ -26,7 +26,7 @@ from der.plotting import PALETTE, style, time_colours
 from der.plotting.space import make_picture
 from der.plotting.style import MUTED, look
 from matplotlib.patheffects import withStroke
-from tutorials import beam_study, control, falling_rod, finger, fitting
+from tutorials import beam_study, control, falling_rod, finger, fitting, two_links
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -362,8 +362,13 @@ def tutorial_control() -> Figure:
     return control.figure(control.run(control.PI()), control.run(control.open_loop))
 
 
+def tutorial_two_links() -> Figure:
+    """Draw the finger of two links under a heavy weight, and what its motor does."""
+    return two_links.figure(two_links.run(two_links.LIMIT), two_links.run(np.inf))
+
+
 def tutorial_finger() -> Figure:
-    """Draw the finger's tip of the fourth tutorial, with and without feedback."""
+    """Draw the finger's tip of the fifth tutorial, with and without feedback."""
     inverse = finger.Inverse()
     return finger.figure(
         inverse, finger.run(finger.Feedback(inverse)), finger.run(finger.OpenLoop(inverse))
@@ -371,7 +376,7 @@ def tutorial_finger() -> Figure:
 
 
 def tutorial_learning() -> Figure:
-    """Draw what the finger of the fifth tutorial has learned."""
+    """Draw what the finger of the sixth tutorial has learned."""
     from tutorials import learning
 
     learned = learning.load(DOCS / "tutorials" / "learning.json")
@@ -380,7 +385,7 @@ def tutorial_learning() -> Figure:
 
 
 def tutorial_fitting() -> Figure:
-    """Draw the strip of the sixth tutorial: its film, the fit, and the fits of other films."""
+    """Draw the strip of the seventh tutorial: its film, the fit, and the fits of other films."""
     exact = fitting.exact_trace()
     data = fitting.film(np.random.default_rng(0), exact)
     return fitting.figure(data, fitting.fit(data), fitting.repeated(exact, films=100))
@@ -570,13 +575,13 @@ def directors() -> Figure:
 
 
 def finger_traces(path: Path) -> None:
-    """Write an animation of the finger of the fourth tutorial, with feedback."""
+    """Write an animation of the finger of the fifth tutorial, with feedback."""
     controlled = finger.run(finger.Feedback(finger.Inverse()))
     finger.replay(controlled).animate(path, speed=2, fps=10)
 
 
 def finger_learned(path: Path) -> None:
-    """Write an animation of what the finger of the fifth tutorial has learned."""
+    """Write an animation of what the finger of the sixth tutorial has learned."""
     from tutorials import learning
 
     learned = learning.load(DOCS / "tutorials" / "learning.json")
@@ -735,6 +740,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         tutorial_falling_rod,
         tutorial_beam_study,
         tutorial_control,
+        tutorial_two_links,
         tutorial_finger,
         tutorial_learning,
         tutorial_fitting,

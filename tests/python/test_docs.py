@@ -232,7 +232,8 @@ def tutorial(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "module", ["falling_rod", "beam_study", "control", "finger", "learning", "fitting"]
+    "module",
+    ["falling_rod", "beam_study", "control", "two_links", "finger", "learning", "fitting"],
 )
 def test_code_of_a_tutorial_is_that_of_its_program(module):
     """Definitions are shown as they are; blocks that use them may be the page's own."""
@@ -320,6 +321,22 @@ def test_tutorial_of_control(tutorial):
         assert with_feedback.error(start, end) < 1e-3
         assert without.error(start, end) > 0.05
     assert np.abs(np.diff(with_feedback.angles)).max() < 0.05  # a motor could do it
+
+
+def test_tutorial_of_two_links(tutorial):
+    two_links = tutorial("two_links")
+    result = der.run(two_links.SCENE)
+    # A small vibration is left at the end of the run.
+    assert result.probes["servo_moment"][-1] == pytest.approx(two_links.balance(result), rel=1e-4)
+    yielding, stiff = two_links.run(two_links.LIMIT), two_links.run(np.inf)
+    heavy, light = np.searchsorted(yielding.times, [two_links.HEAVY[1] - 1e-9, 4.0 - 1e-9])
+    assert yielding.probes["servo_moment"][heavy] == pytest.approx(two_links.LIMIT, rel=1e-2)
+    assert stiff.probes["servo_moment"][heavy] > 1.2 * two_links.LIMIT
+    for track in (yielding, stiff):
+        assert track.probes["servo_angle"][light] == pytest.approx(two_links.CLOSED)
+        assert track.probes["servo_moment"][light] == pytest.approx(
+            result.probes["servo_moment"][-1], rel=5e-3
+        )
 
 
 def test_pictures_can_be_made(tmp_path, monkeypatch):

@@ -34,7 +34,7 @@ SCENES: dict[str, list[float] | None] = {
     "gridshell": None,
     "sagging_net": None,
     "finger": [0.0, 0.3, 0.7],
-    "four_bar_finger": [0.0, 0.2, 0.5],
+    "four_bar_finger": [0.0, 0.12, 0.4],
     "gripper": [0.0, 0.2, 0.5],
     "falling_beam_21": None,
     "simply_supported_20kN": None,

@@ -133,8 +133,13 @@ PIVOTED = (
 
 
 @every_scene
-def test_units_that_are_powers_of_four_leave_the_bits(name: str) -> None:
+def test_units_that_are_powers_of_four_leave_the_bits(
+    name: str, request: pytest.FixtureRequest
+) -> None:
     scene = scenes()[name]
+    if name == "gripper":
+        reason = "after some steps a hinge with a damper has other last bits in other units"
+        request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
     if "-spatial-" in name and any(word in name for word in PIVOTED):
         pytest.skip("pivots depend on the units")
     law = in_units(mass=4.0, length=1 / 64, time=16.0)

@@ -626,6 +626,8 @@ def shuffled() -> Law:
         loads, supports = len(scene.get("loads", ())), len(scene.get("supports", ()))
         # A moment between two rods acts on the second, and an angle is its.
         motors = {load.get("moment", {}).get("joint") for load in scene.get("loads", ())}
+        probes = scene.get("output", {}).get("probes", {}).values()
+        motors |= {probe["joint"] for probe in probes if probe["quantity"] == "angle"}
         for joint in scene.get("joints", ()):
             if "prescribe" not in joint and joint["name"] not in motors:
                 joint["of"] = joint["of"][::-1]

@@ -194,9 +194,9 @@ double work_at_turned_clamps(const Model& model, const Configuration& before,
 
 bool any_rest_length_changes(const Model& model, const Configuration& before,
                              const Configuration& after) {
-  return std::any_of(
-      model.rest_lengths.begin(), model.rest_lengths.end(),
-      [&](Index control) { return before.controls[control] != after.controls[control]; });
+  return std::any_of(model.rest_lengths.begin(), model.rest_lengths.end(), [&](Index control) {
+    return before.controls[control] != after.controls[control];
+  });
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ void show_signature(PyObject* function) {
     show_signature(py::reinterpret_borrow<py::object>(function).attr("__func__").ptr());
     return;
   }
-  if (PyInstanceMethod_Check(function)) function = PyInstanceMethod_GET_FUNCTION(function);
+  if (PyInstanceMethod_Check(function)) function = PyInstanceMethod_Function(function);
   if (!PyCFunction_Check(function)) return;
   PyObject* self = PyCFunction_GET_SELF(function);
   if (self == nullptr || py::detail::function_record_ptr_from_PyObject(self) == nullptr) return;

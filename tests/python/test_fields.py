@@ -91,7 +91,8 @@ def test_every_quantity_where_the_rod_has_it(swing):
     places = {
         one.name: of_kind[one.kind]
         for one in der.quantities()
-        if one.kind not in ("energy", "support", "actuation", "joint") and one.is_available(model)
+        if one.kind not in ("energy", "support", "actuation", "joint", "spring")
+        and one.is_available(model)
     }
     assert len(places) >= 10
     swing["output"]["probes"] = {
@@ -110,7 +111,7 @@ def test_every_quantity_where_the_rod_has_it(swing):
 
 def test_exports_have_every_quantity_with_a_value_at_all_nodes(swing):
     """Components are exported as vectors; a turning angle has no value between nodes that bend."""
-    of_whole = ("ring", "energy", "support", "actuation", "joint")
+    of_whole = ("ring", "energy", "support", "actuation", "joint", "spring")
     along_rods = [q.name for q in der.quantities() if q.kind not in (*of_whole, "natural")]
     left_out = {"x", "y", "z", "vx", "vy", "vz", "turning_angle", "tz"}
     of_sections = {quantity.name for quantity in der.quantities() if quantity.kind == "section"}

@@ -71,7 +71,7 @@ def straight_in_space(n, **more):
 
 ALONG = {"position", "tangent", "bend", "edge", "section", "natural"}
 #: Energies need no larger model, and with joints there is no smaller one.
-KINDS = ALONG | {"velocity", "support", "actuation", "ring", "energy", "joint"}
+KINDS = ALONG | {"velocity", "support", "actuation", "ring", "energy", "joint", "spring"}
 
 
 def spatial_quantities(kinds):

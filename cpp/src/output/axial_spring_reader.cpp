@@ -28,12 +28,13 @@ class AxialSpringReader : public ProbeReader {
         damping_(spring.damping) {}
 
   double value(const Model& model, const State& state) override {
-    const auto difference = [&](const Vector& values) {
-      return (values.segment(model.dof(nodes_[1], 0), model.dimension) -
-              values.segment(model.dof(nodes_[0], 0), model.dimension))
-          .eval();
+    // Of two or three components.
+    using Point = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
+    const auto difference = [&](const Vector& values) -> Point {
+      return values.segment(model.dof(nodes_[1], 0), model.dimension) -
+             values.segment(model.dof(nodes_[0], 0), model.dimension);
     };
-    const Vector between = difference(state.positions);
+    const Point between = difference(state.positions);
     const double length = between.norm();
     const double rate = between.normalized().dot(difference(state.velocities));
     return read_(length, stiffness_ * (length - control_value(model, state, rest_length_)) +

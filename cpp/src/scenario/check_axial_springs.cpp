@@ -36,6 +36,7 @@ void check_rest_length(const Series& length, const Path& path, CheckContext& con
 void check(int number, CheckContext& context) {
   const AxialSpring& spring = context.scene.springs[static_cast<std::size_t>(number)];
   const Path path{"springs", number};
+  if (context.diagnostics.under(path)) return;
   if (spring.stiffness == 0.0 && spring.damping == 0.0) {
     context.diagnostics.add(path / "stiffness",
                             "0 without a 'damping' does nothing: write a stiffness in N/m");

@@ -13,7 +13,7 @@
 namespace der {
 namespace {
 
-constexpr double kRounding = 1e-15;  // [rad], and of a rotation
+constexpr double kRotationRounding = 1e-15;  // [rad], and of a rotation
 
 }  // namespace
 
@@ -117,7 +117,7 @@ double SpatialJointRotations::settle(const Vector& controls, const Vector& extra
       const double change = step[static_cast<Index>(i)];
       double& rotation = here_.coordinates[free_[i]];
       rotation -= change;
-      settled = settled && std::abs(change) <= 8.0 * kRounding * (1.0 + std::abs(rotation));
+      settled = settled && std::abs(change) <= 8.0 * kRotationRounding * (1.0 + std::abs(rotation));
     }
     // The loads at both ends of the way do the work in the mean.
     work -= 0.5 * loads_.dot(step);

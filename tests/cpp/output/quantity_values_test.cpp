@@ -155,7 +155,8 @@ TEST_CASE("every quantity of a planar rod has the value worked out by hand") {
   const std::map<std::string, double> expected = expected_values();
   for (const Quantity& quantity : quantities()) {
     if (quantity.scope > QuantityScope::Planar) continue;
-    if (quantity.kind == QuantityKind::Joint) continue;  // model/joints_test.cpp
+    if (quantity.kind == QuantityKind::Joint) continue;   // model/joints_test.cpp
+    if (quantity.kind == QuantityKind::Spring) continue;  // tests/validation/test_networks.py
     CAPTURE(quantity.name);
     const auto value = expected.find(quantity.name);
     const bool is_known = value != expected.end() && value->second != 0.0;
@@ -196,8 +197,10 @@ TEST_CASE("every quantity is made in one way") {
     const bool is_of_support = quantity.kind == QuantityKind::Support;
     const bool is_of_actuation = quantity.kind == QuantityKind::Actuation;
     const bool is_of_joint = quantity.kind == QuantityKind::Joint;
-    CHECK((quantity.make_field == nullptr) ==
-          (is_energy || is_of_ring || is_of_support || is_of_actuation || is_of_joint));
+    const bool is_of_spring = quantity.kind == QuantityKind::Spring;
+    CHECK((quantity.make_field == nullptr) == (is_energy || is_of_ring || is_of_support ||
+                                               is_of_actuation || is_of_joint || is_of_spring));
+    CHECK((quantity.read_spring != nullptr) == is_of_spring);
     CHECK((quantity.of_joint != JointQuantity::None) == is_of_joint);
     CHECK((quantity.read_actuation != nullptr) == is_of_actuation);
     CHECK(quantity.actuates.empty() != is_of_actuation);

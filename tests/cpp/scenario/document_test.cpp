@@ -44,6 +44,8 @@ bool same(const Value& a, const Value& b) {
     if (const auto* plain = std::get_if<scenario::Plain>(&value.content)) return plain->text;
     return std::get<std::string>(value.content);
   };
+  // A number that has had a unit.
+  if (const auto* number = std::get_if<double>(&a.content)) return std::stod(text(b)) == *number;
   return text(a) == text(b);
 }
 

@@ -213,7 +213,7 @@ output:
   std::size_t probes = 0;
   for (const Quantity& quantity : quantities()) {
     if (quantity.scope > QuantityScope::Planar || quantity.read_actuation != nullptr) continue;
-    if (quantity.kind == QuantityKind::Joint) continue;  // below
+    if (quantity.kind == QuantityKind::Joint || quantity.read_spring != nullptr) continue;  // below
     const std::string head = "    " + quantity.name;
     if (quantity.read_reaction != nullptr) {
       scene += head + ": {quantity: " + quantity.name + ", support: 0}\n";
@@ -242,7 +242,12 @@ TEST_CASE("steps of rods with joints, and what is read off them, allocate nothin
 rods:
   - {name: a, nodes: 6, from: [0, 0], to: [1, 0], cross_section: {stiffness: {EA: 100, EI: 1, mass_per_length: 1}}}
   - {name: b, nodes: 6, from: [1, 0], to: [1, 1], cross_section: {stiffness: {EA: 100, EI: 1, mass_per_length: 1}}}
-joints: [{name: j, of: [{rod: a, at: end}, {rod: b, at: start}]}]
+joints:
+  - {name: j, of: [{rod: a, at: end}, {rod: b, at: start}]}
+  - {name: wall, of: [{rod: a, at: start}]}
+  - {name: tip, of: [{rod: b, at: end}]}
+springs:
+  - {name: tie, between: [wall, tip], stiffness: 5, damping: 0.1, rest_length: {times: [0, 1], values: [1.4, 1]}}
 supports: [{rod: a, at: start, clamp: true}]
 loads:
   - moment: {joint: j, moment: 0.3}
@@ -254,6 +259,8 @@ output:
     pull: {joint: j, leg: b, quantity: force_y}
     bend: {rod: b, at: start, quantity: moment}
     slope: {rod: b, at: end, quantity: slope}
+    tie: {spring: tie, quantity: spring_force}
+    length: {spring: tie, quantity: spring_length}
     tension: {rod: b, over: rod, reduce: max, quantity: tension}
 time: {duration: 0.1, step: 0.0005, integrator: )") +
                                           integrator + "}\n"));

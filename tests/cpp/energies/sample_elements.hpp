@@ -49,7 +49,7 @@ inline Configuration sample_configuration(Random& random) {
   here.controls[kTurn] = uniform(random, -1.0, 1.0);
   here.controls[kElongation] = uniform(random, -0.1, 0.1);
   here.controls[kDriven] = 0.07;
-  here.controls[kRestLength] = uniform(random, 0.5, 2.0);
+  here.controls[kRestLength] = 1.1;
   for (Index i = kStrains; i < kJoints; ++i) here.controls[i] = uniform(random, -0.5, 0.5);
   return here;
 }

@@ -28,7 +28,7 @@ class AxialSpringReader : public ProbeReader {
         damping_(spring.damping) {}
 
   double value(const Model& model, const State& state) override {
-    // Of two or three components.
+    // It has two or three components, and needs no memory of its own.
     using Point = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
     const auto difference = [&](const Vector& values) -> Point {
       return values.segment(model.dof(nodes_[1], 0), model.dimension) -

@@ -245,7 +245,8 @@ void InitialStress::add_tension(const std::array<Index, std::size_t{2} * Dim>& d
   term.matrix = across(edge, tension / edge.norm());
 }
 
-/// What their stiffness across them changes by. One of rest length 0 has the same everywhere.
+/// The change of their stiffness across them. A spring of rest length 0 has the same stiffness in
+/// all directions, whatever its tension.
 template <int Dim>
 void InitialStress::add_axial_springs(const Model& model, const Configuration& here,
                                       const Vector& displacement) {

@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.typing import ColorType
 from numpy.typing import NDArray
 
-from der._core import HeldNode, Rod, SpringSupport, axial_springs, springs
+from der._core import HeldNode, Rod, SpringSupport, springs
 from der.actuated_stretches import ActuatedStretch
 from der.film import mode_displacements
 from der.plotting.camera import along_axes, perspective
@@ -206,7 +206,7 @@ class SpatialPicture(Picture):
             *(self._sleeve(n, one, at) for n, one in enumerate(self.actuated)),
             *(part for node in held for part in self._support(node, by_name[node.rod], at)),
             *(part for one in springs(self.result.scenario) for part in self._spring(one, at)),
-            *(self._coil(*at.positions[ends]) for ends in axial_springs(self.result.scenario)),
+            *(self._coil(*at.positions[ends]) for ends in self._axial_springs),
             *self._load_solids(by_name, loads, at.positions),
         ]
         return Faces.joined(parts)
